@@ -1,0 +1,33 @@
+#pragma once
+/// Layers as files: WKT (lossless) and SVG.
+
+#include <filesystem>
+#include <iosfwd>
+#include <string>
+#include <vector>
+
+#include "routebench/geometry/types.hpp"
+
+namespace routebench {
+
+/// One layer a line: `MULTIPOLYGON Z (((x y z, ...), (hole)), ...)` with every digit that the grid
+/// needs; an empty layer is `MULTIPOLYGON Z EMPTY` and keeps its place. Comment lines begin with
+/// '#'; the first ones state height, index and repair marks.
+void write_wkt(std::ostream& out, const std::vector<Layer>& layers);
+
+/// Reads what write_wkt writes, and plain WKT of other tools: MULTIPOLYGON or POLYGON, with or
+/// without Z, one a line. Rings are turned the right way round and put on the grid. Without z
+/// values layers are numbered upwards by layer_height_mm. Throws Error{kBadInput} naming file, line
+/// and column.
+[[nodiscard]] std::vector<Layer> read_wkt(const std::filesystem::path& file,
+                                          double layer_height_mm);
+
+/// One SVG document for one layer: material grey, solid part darker, y upwards, millimetres, data-*
+/// attributes with index, z and repair mark; coordinates keep every digit that the grid needs.
+void write_svg(std::ostream& out, const Layer& layer);
+
+/// Reads what write_svg writes.
+/// Throws Error{kBadInput} naming file and place.
+[[nodiscard]] Layer read_svg(const std::filesystem::path& file);
+
+}  // namespace routebench

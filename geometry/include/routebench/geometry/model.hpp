@@ -1,0 +1,54 @@
+#pragma once
+/// From a model's name to a mesh that can be sliced.
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "routebench/geometry/types.hpp"
+
+namespace routebench {
+
+/// What was found in a mesh, as it came (before anything was mended).
+struct MeshReport {
+  std::size_t triangles = 0;
+  std::size_t vertices = 0;  ///< after exact welding
+  Point3 lower_mm;           ///< bounding box after scaling and placing
+  Point3 upper_mm;
+  std::size_t components = 0;          ///< pieces joined by edges
+  std::size_t open_edges = 0;          ///< edges with one triangle
+  std::size_t non_manifold_edges = 0;  ///< edges with three or more triangles
+  std::size_t flipped_triangles =
+      0;  ///< triangles that disagree with their neighbours on what is outside
+  std::size_t degenerate_triangles = 0;
+  std::size_t duplicate_triangles = 0;
+  double volume_mm3 = 0;  ///< signed, after mending; what the outside orientation encloses
+};
+
+struct ModelOptions {
+  bool repair = false;  ///< go on where a sound reader would refuse (NaN corners, truncated files)
+};
+
+/// A model ready to be sliced: on z = 0, oriented, without degenerate triangles.
+struct Model {
+  std::string spec;  ///< as the user wrote it
+  Mesh mesh;
+  MeshReport report;
+  std::vector<std::string> warnings;  ///< one line each, without the model's name
+  std::uint64_t content_hash = 0;  ///< of the prepared mesh's triangles, independent of their order
+};
+
+/// Reads or makes a model.
+///
+/// Takes  a spec: `shape:NAME?key=value&...`, `cgal:PATH?...`, or a path to an STL (binary or
+/// ASCII, told apart by
+///        content), OBJ, OFF, PLY or 3MF file. `?size=60` scales the largest side to 60 mm.
+/// Returns the model moved to z = 0. x and y stay as they are unless they lie further than 1 m from
+/// the origin: then the
+///        bounding box is moved to begin at x = y = 0 and a warning says so.
+/// Throws Error{kBadInput} in one line for what cannot be used.
+/// Cost   linear in the file and the triangles.
+[[nodiscard]] Model load_model(const std::string& spec, const ModelOptions& options = {});
+
+}  // namespace routebench

@@ -1,0 +1,47 @@
+#pragma once
+/// Areas: measures, offsets and Booleans of polygons with holes, exact to the grid.
+
+#include <span>
+#include <vector>
+
+#include "routebench/geometry/types.hpp"
+
+namespace routebench {
+
+[[nodiscard]] double signed_area_mm2(const Ring& ring);  ///< positive if counter-clockwise
+[[nodiscard]] double area_mm2(const Polygon& polygon);
+[[nodiscard]] double area_mm2(const Polygons& polygons);
+[[nodiscard]] double perimeter_mm(const Ring& ring);
+[[nodiscard]] double perimeter_mm(const Polygons& polygons);  ///< outer rings and holes
+
+struct Box2 {
+  Point2 lower;
+  Point2 upper;
+};
+/// Smallest box around the polygons; lower > upper if there are none.
+[[nodiscard]] Box2 bounding_box(const Polygons& polygons);
+
+/// Which winding numbers are inside.
+enum class FillRule { kNonZero, kEvenOdd, kPositive };
+
+/// Polygons that directed rings enclose. Rings may cross, overlap and repeat. The result is
+/// canonical: it does not depend on the order of the rings or on where each begins.
+[[nodiscard]] Polygons polygons_from_rings(std::vector<Ring> rings, FillRule rule);
+
+enum class Join { kMiter, kRound };
+
+/// Grows (distance > 0) or shrinks (distance < 0) polygons by |distance_mm|. The result is cleaned
+/// of points nearer than 5 um to their neighbours' line: without that, repeated offsets lose area.
+/// Cost   O(n log n) typical.
+[[nodiscard]] Polygons offset(const Polygons& polygons, double distance_mm,
+                              Join join = Join::kMiter);
+
+/// What is left of polygons after everything narrower than width_mm is taken away (opening: shrink,
+/// then grow, cut to the original).
+[[nodiscard]] Polygons without_thin_parts(const Polygons& polygons, double width_mm);
+
+[[nodiscard]] Polygons unite(const Polygons& a, const Polygons& b);
+[[nodiscard]] Polygons intersect(const Polygons& a, const Polygons& b);
+[[nodiscard]] Polygons subtract(const Polygons& a, const Polygons& b);
+
+}  // namespace routebench

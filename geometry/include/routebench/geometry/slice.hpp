@@ -1,0 +1,66 @@
+#pragma once
+/// From a mesh to layers.
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "routebench/geometry/parallel.hpp"
+#include "routebench/geometry/types.hpp"
+
+namespace routebench {
+
+/// How triangles and planes are brought together. All methods give identical layers.
+/// Source: K. De Keyser, 2016.
+enum class SliceMethod {
+  kBucket,  ///< every triangle is visited once and pushes its cuts into the planes it crosses:
+            ///< linear in the output
+  kSweep,   ///< triangles enter and leave an active set while the plane rises: O(Q + N log N) plus
+            ///< the cuts
+  kNaive,   ///< every triangle against every plane: O(Q N)
+};
+
+/// Throws Error{kBadUsage} for an unknown name.
+[[nodiscard]] SliceMethod slice_method(std::string_view name);
+
+struct SliceOptions {
+  double layer_height_mm = 0.2;
+  SliceMethod method = SliceMethod::kBucket;
+  bool repair = false;    ///< close gaps wider than crack_mm too, and mark those layers
+  double crack_mm = 0.1;  ///< gaps up to this are closed without being asked, and counted
+};
+
+struct SliceReport {
+  std::size_t cracks_closed = 0;  ///< gaps up to crack_mm, over all layers
+  double widest_crack_mm = 0;
+  std::size_t gaps_repaired = 0;  ///< wider gaps, over all layers; only with repair
+  double widest_gap_mm = 0;
+  std::size_t repaired_layers = 0;
+  std::vector<std::string> warnings;
+};
+
+struct Slices {
+  std::vector<Layer> layers;
+  SliceReport report;
+};
+
+/// Cuts a mesh at mid-slab heights z_k = (k + 1/2) layer_height_mm above z = 0.
+///
+/// A vertex on a plane counts as above it: a cut at the height of a flat face is the limit from
+/// below, flat faces vanish, and a closed mesh gives closed rings. Where shells overlap the
+/// material is what any of them encloses (non-zero winding). Every coordinate lies on the grid; the
+/// layers do not depend on the order of triangles, the method or the loop that runs them.
+///
+/// Takes   a mesh on z = 0. `model_name` is used in messages only.
+/// Returns one layer a plane that lies below the top, empty ones included; `solid` is left empty
+/// (see solid.hpp). Throws  Error{kBadInput} where a contour stays open by more than crack_mm and
+/// repair is off (names the first such layer, its
+///         z, the place and the gap), and where no layer has any area.
+/// Cost    bucket: linear in triangles + segments; rings to polygons O(n log n) a layer.
+/// Source  K. De Keyser, 2016 (buckets); one integer level a vertex makes it exact.
+[[nodiscard]] Slices slice_mesh(const Mesh& mesh, const SliceOptions& options,
+                                const std::string& model_name,
+                                const ParallelFor& parallel_for = serial_for);
+
+}  // namespace routebench

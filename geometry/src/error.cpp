@@ -1,0 +1,7 @@
+#include "routebench/geometry/error.hpp"
+
+namespace routebench {
+
+Error::~Error() = default;
+
+}  // namespace routebench

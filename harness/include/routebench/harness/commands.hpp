@@ -1,0 +1,20 @@
+#pragma once
+/// The subcommands of the program. Each adds itself to the command line; its callback does the
+/// work, writes data to stdout and sets the exit code (0 done, 1 done but some cells are not
+/// valid). Bad usage or input is thrown as Error and becomes exit code 2.
+
+namespace CLI {
+class App;
+}
+
+namespace routebench {
+
+void add_run_command(CLI::App& app, int& exit_code);
+void add_plan_command(CLI::App& app, int& exit_code);
+void add_slice_command(CLI::App& app, int& exit_code);
+void add_planners_command(CLI::App& app, int& exit_code);
+void add_plot_command(CLI::App& app, int& exit_code);
+void add_export_command(CLI::App& app, int& exit_code);
+void add_doctor_command(CLI::App& app, int& exit_code);
+
+}  // namespace routebench

@@ -1,0 +1,75 @@
+#pragma once
+/// What is compared: planners with parameters that together print a layer.
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "routebench/geometry/types.hpp"
+#include "routebench/harness/demand.hpp"
+#include "routebench/harness/task.hpp"
+#include "routebench/planning/params.hpp"
+#include "routebench/planning/planner.hpp"
+#include "routebench/planning/registry.hpp"
+
+namespace routebench {
+
+struct SlotSpec {
+  std::string planner;
+  ParamSet params;  ///< as given; see Registry::Entry::resolve
+};
+
+/// What is printed before what.
+enum class LayerOrder {
+  kIsland,  ///< everything of one island before the next, islands by nearest entry
+  kStage,   ///< all walls, then all insides
+};
+
+struct ContenderSpec {
+  std::string name;
+  std::optional<SlotSpec> shell;
+  std::optional<SlotSpec> fill;
+  LayerOrder order = LayerOrder::kIsland;
+};
+
+/// What a stroke is for.
+enum class StrokeKind : std::uint8_t { kWall, kDense, kSparse };
+
+struct PlannedLayer {
+  Route route;
+  std::vector<StrokeKind> kinds;  ///< one a stroke
+  std::int64_t plan_wall_ns = 0;  ///< inside plan() alone, summed over its calls
+  std::int64_t plan_cpu_ns = 0;   ///< of this thread
+};
+
+/// A contender ready to plan. Immutable; plan() may be called from any thread.
+class Contender {
+ public:
+  /// Throws Error{kBadInput} for unknown planners, a planner in the wrong slot, bad parameters, or
+  /// no slot at all.
+  Contender(ContenderSpec spec, const Registry& registry);
+
+  /// Plans one layer: cuts nothing itself (see demand_of), hands each region to its planner, puts
+  /// the strokes together in the contender's order. `origin` anchors patterns (lower corner of the
+  /// model). Throws what planners throw; Error{kBadInput} if a planner returns a stroke of fewer
+  /// than two points, a non-finite coordinate or a width that is not positive.
+  [[nodiscard]] PlannedLayer plan(const Layer& layer, const Demand& demand, const Task& task,
+                                  Point2 origin, std::uint64_t seed, std::stop_token stop) const;
+
+  [[nodiscard]] const ContenderSpec& spec() const noexcept { return spec_; }
+  /// The slots' parameters, all of them.
+  [[nodiscard]] const ParamSet& shell_params() const noexcept { return shell_params_; }
+  [[nodiscard]] const ParamSet& fill_params() const noexcept { return fill_params_; }
+
+ private:
+  ContenderSpec spec_;
+  ParamSet shell_params_;
+  ParamSet fill_params_;
+  std::unique_ptr<const Planner> shell_;
+  std::unique_ptr<const Planner> fill_;
+};
+
+}  // namespace routebench

@@ -1,0 +1,86 @@
+#pragma once
+/// The planners that a program knows.
+
+#include <concepts>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "routebench/planning/params.hpp"
+#include "routebench/planning/planner.hpp"
+
+namespace routebench {
+
+/// What a planner can lay.
+enum class PlannerRole { kShell, kFill };
+
+struct PlannerInfo {
+  std::string name;  ///< as in configs: snake_case
+  PlannerRole role = PlannerRole::kFill;
+  std::string summary;  ///< one line
+  std::string source;   ///< author, year; empty if it is our own
+};
+
+/// What a class must have to be registered.
+template <typename P>
+concept PlannerType = std::derived_from<P, Planner> && requires(ParamBinder& bind) {
+  { P::info() } -> std::same_as<PlannerInfo>;
+  typename P::Params;
+  requires std::constructible_from<P, const typename P::Params&>;
+  typename P::Params{}.bind(bind);
+};
+
+class Registry {
+ public:
+  struct Entry {
+    PlannerInfo info;
+    std::vector<ParamSchema> params;
+    std::string origin;  ///< "built in" or the plugin's file
+    /// Every parameter with its value; throws Error{kBadInput} for unknown, mistyped or
+    /// out-of-range values.
+    std::function<ParamSet(const ParamSet&)> resolve;
+    /// Throws as resolve does.
+    std::function<std::unique_ptr<const Planner>(const ParamSet&)> make;
+  };
+
+  /// Throws Error{kBadInput} if the name is taken; says by whom.
+  template <PlannerType P>
+  void add() {
+    const std::string owner = "planner " + P::info().name;
+    typename P::Params defaults;
+    ParamBinder collect;
+    defaults.bind(collect);
+    add_entry({P::info(), collect.schema(), origin_,
+               [owner](const ParamSet& values) {
+                 typename P::Params params;
+                 ParamBinder bind(owner, values);
+                 params.bind(bind);
+                 bind.finish();
+                 return bind.resolved();
+               },
+               [owner](const ParamSet& values) -> std::unique_ptr<const Planner> {
+                 typename P::Params params;
+                 ParamBinder bind(owner, values);
+                 params.bind(bind);
+                 bind.finish();
+                 return std::make_unique<const P>(params);
+               }});
+  }
+
+  /// Throws Error{kBadInput} with the nearest known name.
+  [[nodiscard]] const Entry& at(const std::string& name) const;
+  [[nodiscard]] const std::map<std::string, Entry>& entries() const noexcept { return entries_; }
+
+  /// Where planners that are added from now on come from.
+  void set_origin(std::string origin) { origin_ = std::move(origin); }
+
+ private:
+  void add_entry(Entry entry);
+
+  std::map<std::string, Entry> entries_;
+  std::string origin_ = "built in";
+};
+
+}  // namespace routebench
