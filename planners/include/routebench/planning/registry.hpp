@@ -29,7 +29,7 @@ concept PlannerType = std::derived_from<P, Planner> && requires(ParamBinder& bin
   { P::info() } -> std::same_as<PlannerInfo>;
   typename P::Params;
   requires std::constructible_from<P, const typename P::Params&>;
-  typename P::Params{}.bind(bind);
+  (typename P::Params{}).bind(bind);
 };
 
 class Registry {
