@@ -1,0 +1,105 @@
+#pragma once
+/// From a model's name to scores: the steps that `plan`, `slice` and experiments share.
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "routebench/geometry/model.hpp"
+#include "routebench/geometry/parallel.hpp"
+#include "routebench/geometry/slice.hpp"
+#include "routebench/geometry/types.hpp"
+#include "routebench/harness/contender.hpp"
+#include "routebench/harness/demand.hpp"
+#include "routebench/harness/judge.hpp"
+#include "routebench/harness/metrics.hpp"
+#include "routebench/harness/task.hpp"
+#include "routebench/planning/plugin.hpp"
+#include "routebench/planning/registry.hpp"
+
+namespace routebench {
+
+/// The planners of a program and the plugins that were looked at for them.
+struct PlannerSet {
+  Registry registry;
+  std::vector<PluginRecord> plugins;  ///< one a file, in the order given, refused ones included
+};
+
+/// Registers the built-in planners and then what the plugin files bring.
+[[nodiscard]] PlannerSet load_planners(std::span<const std::string> plugin_files);
+
+/// Throws Error{kBadInput} naming the first plugin that was refused and why.
+void require_all_loaded(const PlannerSet& planners);
+
+struct SliceModelOptions {
+  SliceMethod method = SliceMethod::kBucket;
+  bool repair = false;  ///< see ModelOptions and SliceOptions
+};
+
+/// A model cut into layers; the mesh itself is no longer held.
+struct SlicedModel {
+  std::string spec;                        ///< as the user wrote it
+  std::optional<MeshReport> mesh;          ///< nothing if the model is a file of layers
+  std::optional<std::uint64_t> mesh_hash;  ///< see Model::content_hash
+  SliceReport report;
+  std::vector<std::string> warnings;  ///< of reading and slicing, one line each, without the spec
+  std::vector<Layer> layers;          ///< with `solid` set
+  Point2 origin;  ///< lower corner of all layers together: where patterns are anchored
+};
+
+/// Reads or makes a model, cuts it at the task's layer height and finds its skins.
+///
+/// Takes  a model spec (see load_model) or the path of a .wkt file of layers (see read_wkt), whose
+///        layers must be as high as the task's.
+/// Throws Error{kBadInput} for what cannot be used.
+[[nodiscard]] SlicedModel slice_model(const std::string& spec, const Task& task,
+                                      const SliceModelOptions& options,
+                                      const ParallelFor& parallel_for);
+
+/// A sliced model with what a task demands of each of its layers.
+struct PreparedModel {
+  SlicedModel sliced;
+  std::vector<Demand> demands;  ///< one a layer
+};
+
+[[nodiscard]] PreparedModel prepare_model(const std::string& spec, const Task& task,
+                                          const SliceModelOptions& options,
+                                          const ParallelFor& parallel_for);
+
+/// Places in `layers`, all of them: the selection of plan_layers and judge_layers that leaves
+/// nothing out.
+[[nodiscard]] std::vector<std::size_t> all_layers(const SlicedModel& sliced);
+
+/// Plans the chosen layers. Times are those of each call to plan() alone; wall times are to be
+/// trusted only if no other thread competes, that is with serial_for.
+///
+/// Takes   places in the model's layers, ascending.
+/// Returns one planned layer for each of them.
+/// Throws  what Contender::plan throws, of the lowest such layer.
+[[nodiscard]] std::vector<PlannedLayer> plan_layers(
+    const Contender& contender, const PreparedModel& model, std::span<const std::size_t> chosen,
+    const Task& task, std::uint64_t seed, std::stop_token stop, const ParallelFor& parallel_for);
+
+/// A cell's scores.
+struct JudgedCell {
+  std::vector<LayerScore> layers;  ///< with plan_wall_ns and plan_cpu_ns
+  Scores totals;                   ///< with both times; without peak_rss_bytes
+  Verdict verdict;
+};
+
+/// Judges planned layers one above the other: each is entered from where the nearest chosen layer
+/// below with a stroke ended.
+/// Takes what plan_layers took and returned.
+[[nodiscard]] JudgedCell judge_layers(const Judge& judge, const PreparedModel& model,
+                                      std::span<const std::size_t> chosen,
+                                      std::span<const PlannedLayer> planned,
+                                      const ParallelFor& parallel_for);
+
+/// Where the nozzle is after a route; nothing if it has no stroke.
+[[nodiscard]] std::optional<Point2> end_of(const Route& route);
+
+}  // namespace routebench
