@@ -38,19 +38,27 @@ class EdgeGrid {
   struct Edge {
     Point2 a, b;
   };
+  /// Index lists of many buckets in one array: bucket i holds items[begin[i] .. begin[i + 1]).
+  struct Buckets {
+    std::vector<std::uint32_t> begin;
+    std::vector<std::uint32_t> items;
+  };
+  /// Calls visit(cell) for every cell that comes within margin_mm of segment ab.
   template <typename Visit>
-  void visit_edges(Point2 a, Point2 b, double margin_mm, Visit&& visit) const;
+  void visit_cells(Point2 a, Point2 b, double margin_mm, Visit&& visit) const;
+  /// Edges in the cells that come within margin_mm of segment ab, each once, ascending.
+  [[nodiscard]] std::vector<std::uint32_t> edges_near(Point2 a, Point2 b, double margin_mm) const;
   [[nodiscard]] std::int64_t column(double x) const;
   [[nodiscard]] std::int64_t row(double y) const;
 
   std::vector<Edge> edges_;
-  std::vector<std::uint32_t>
-      cell_begin_;  // edges of cell c: cell_edges_[cell_begin_[c] .. cell_begin_[c + 1])
-  std::vector<std::uint32_t> cell_edges_;
-  Point2 origin_{};
+  Buckets cells_;  // row by row
+  Buckets rows_;   // every edge that a horizontal line through the row may meet
+  Point2 lower_{};
+  Point2 upper_{};
   double cell_mm_ = 1;
-  std::int64_t columns_ = 0;
-  std::int64_t rows_ = 0;
+  std::int64_t column_count_ = 0;
+  std::int64_t row_count_ = 0;
 };
 
 }  // namespace routebench

@@ -68,6 +68,11 @@ struct Printer {
 void set_task_value(Task& task, std::string_view key, std::string_view value);
 void set_printer_value(Printer& printer, std::string_view key, std::string_view value);
 
+/// Checks what keys ask of each other; to be called once all are set, since no order of setting
+/// them may matter. Throws Error{kBadInput} if a bead would be higher than wide or the gate's
+/// limits exclude each other.
+void check_task(const Task& task);
+
 /// Key and value, in the order of the struct; values as a config would have them. Gate limits are
 /// keys of the task, named gate_covered_min and so on; start_mm is written "x,y".
 struct KeyValue {

@@ -2,13 +2,14 @@
 /// Parameters of planners: bound once, in one line each, from which schema, help, validation and
 /// record come.
 
-#include <concepts>
+#include <cstddef>
 #include <cstdint>
 #include <initializer_list>
 #include <map>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <variant>
 #include <vector>
 
@@ -87,6 +88,8 @@ class ParamBinder {
   [[nodiscard]] const ParamSet& resolved() const noexcept { return resolved_; }
 
  private:
+  /// Notes a parameter; returns the value that was given for it, if any.
+  const ParamValue* declare(ParamSchema schema);
   std::size_t bind_choice(const char* name, const std::vector<std::string>& names,
                           std::size_t chosen, const char* help);
 

@@ -17,11 +17,12 @@ namespace routebench {
 /// Grows whenever a type that crosses the border between program and plugin changes.
 inline constexpr int kPluginAbi = 1;
 
-/// Compiler family, standard library, its ABI flag and debug containers, language level: what must
-/// agree between program and plugin because C++ types cross the border.
+/// Standard library, its ABI flag and debug containers, language level: what must agree between
+/// program and plugin because C++ types cross the border.
 [[nodiscard]] constexpr const char* plugin_build_id() noexcept;
 
-/// What a plugin's one exported C function returns.
+/// What a plugin's one exported C function returns. Stays as it is in every version, so that a
+/// plugin of another version can be told from ours before anything else of it is touched.
 struct PluginDescription {
   int abi;
   const char* build_id;

@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "routebench/planning/params.hpp"
@@ -25,11 +26,12 @@ struct PlannerInfo {
 
 /// What a class must have to be registered.
 template <typename P>
-concept PlannerType = std::derived_from<P, Planner> && requires(ParamBinder& bind) {
+concept PlannerType = std::derived_from<P, Planner> &&
+    requires(ParamBinder& bind, typename P::Params& params) {
   { P::info() } -> std::same_as<PlannerInfo>;
-  typename P::Params;
   requires std::constructible_from<P, const typename P::Params&>;
-  (typename P::Params{}).bind(bind);
+  requires std::default_initializable<typename P::Params>;
+  params.bind(bind);
 };
 
 class Registry {
@@ -50,7 +52,7 @@ class Registry {
   void add() {
     const std::string owner = "planner " + P::info().name;
     typename P::Params defaults;
-    ParamBinder collect;
+    ParamBinder collect(owner, {});
     defaults.bind(collect);
     add_entry({P::info(), collect.schema(), origin_,
                [owner](const ParamSet& values) {
@@ -75,6 +77,7 @@ class Registry {
 
   /// Where planners that are added from now on come from.
   void set_origin(std::string origin) { origin_ = std::move(origin); }
+  [[nodiscard]] const std::string& origin() const noexcept { return origin_; }
 
  private:
   void add_entry(Entry entry);

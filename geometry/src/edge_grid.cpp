@@ -1,0 +1,187 @@
+#include "routebench/geometry/edge_grid.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "routebench/geometry/grid.hpp"
+#include "routebench/geometry/region.hpp"
+#include "routebench/geometry/vec.hpp"
+
+namespace routebench {
+namespace {
+
+// Crossings computed in floating point are off by less than this; nearer than this to an edge is on
+// it.
+constexpr double kOnEdgeMm = 4 / kGridUnitsPerMm;
+
+}  // namespace
+
+EdgeGrid::EdgeGrid(const Polygons& polygons) {
+  const auto add_ring = [&](const Ring& ring) {
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      const Point2 a = ring[i], b = ring[(i + 1) % ring.size()];
+      if (a != b) edges_.push_back({a, b});
+    }
+  };
+  for (const Polygon& polygon : polygons) {
+    add_ring(polygon.outer);
+    for (const Ring& hole : polygon.holes) add_ring(hole);
+  }
+  if (edges_.empty()) return;
+
+  const Box2 box = bounding_box(polygons);
+  lower_ = box.lower - Point2{kOnEdgeMm, kOnEdgeMm};
+  upper_ = box.upper + Point2{kOnEdgeMm, kOnEdgeMm};
+  const Point2 size = upper_ - lower_;
+  // About one cell an edge; a long thin box gets at most as many cells along it as there are edges.
+  const double count = static_cast<double>(edges_.size());
+  cell_mm_ = std::max(std::sqrt(size.x * size.y / count), std::max(size.x, size.y) / count);
+  column_count_ = static_cast<std::int64_t>(size.x / cell_mm_) + 1;
+  row_count_ = static_cast<std::int64_t>(size.y / cell_mm_) + 1;
+
+  // Two passes: how many items a bucket gets, then the items.
+  const auto fill = [&](Buckets& buckets, std::int64_t bucket_count, auto&& for_buckets_of) {
+    buckets.begin.assign(static_cast<std::size_t>(bucket_count) + 1, 0);
+    for (const Edge& edge : edges_)
+      for_buckets_of(edge,
+                     [&](std::int64_t i) { ++buckets.begin[static_cast<std::size_t>(i) + 1]; });
+    for (std::size_t i = 1; i < buckets.begin.size(); ++i) buckets.begin[i] += buckets.begin[i - 1];
+    buckets.items.resize(buckets.begin.back());
+    std::vector<std::uint32_t> next(buckets.begin.begin(), buckets.begin.end() - 1);
+    for (std::uint32_t e = 0; e < edges_.size(); ++e)
+      for_buckets_of(edges_[e], [&](std::int64_t i) {
+        buckets.items[next[static_cast<std::size_t>(i)]++] = e;
+      });
+  };
+  fill(cells_, column_count_ * row_count_,
+       [&](const Edge& edge, auto&& visit) { visit_cells(edge.a, edge.b, kOnEdgeMm, visit); });
+  fill(rows_, row_count_, [&](const Edge& edge, auto&& visit) {
+    const auto [low, high] = std::minmax(edge.a.y, edge.b.y);
+    for (std::int64_t r = row(low); r <= row(high); ++r) visit(r);
+  });
+}
+
+std::int64_t EdgeGrid::column(double x) const {
+  const double cell = std::floor((x - lower_.x) / cell_mm_);
+  return static_cast<std::int64_t>(std::clamp(cell, 0.0, static_cast<double>(column_count_ - 1)));
+}
+
+std::int64_t EdgeGrid::row(double y) const {
+  const double cell = std::floor((y - lower_.y) / cell_mm_);
+  return static_cast<std::int64_t>(std::clamp(cell, 0.0, static_cast<double>(row_count_ - 1)));
+}
+
+template <typename Visit>
+void EdgeGrid::visit_cells(Point2 a, Point2 b, double margin_mm, Visit&& visit) const {
+  if (a.y > b.y) std::swap(a, b);
+  const auto [left, right] = std::minmax(a.x, b.x);
+  if (b.y + margin_mm < lower_.y || a.y - margin_mm > upper_.y || right + margin_mm < lower_.x ||
+      left - margin_mm > upper_.x)
+    return;
+  const std::int64_t last_row = row(b.y + margin_mm);
+  for (std::int64_t r = row(a.y - margin_mm); r <= last_row; ++r) {
+    // The part of the segment that lies in this row, widened by the margin.
+    double low_x = left, high_x = right;
+    if (b.y > a.y && left < right) {
+      const double bottom = lower_.y + static_cast<double>(r) * cell_mm_ - margin_mm;
+      const double top = bottom + cell_mm_ + 2 * margin_mm;
+      const double share_in = std::clamp((bottom - a.y) / (b.y - a.y), 0.0, 1.0);
+      const double share_out = std::clamp((top - a.y) / (b.y - a.y), 0.0, 1.0);
+      const auto [x0, x1] =
+          std::minmax(a.x + share_in * (b.x - a.x), a.x + share_out * (b.x - a.x));
+      low_x = x0;
+      high_x = x1;
+    }
+    // Rounding in the shares stays far below the margin; cells outside the box hold nothing.
+    const double slack = margin_mm + kOnEdgeMm;
+    if (high_x + slack < lower_.x || low_x - slack > upper_.x) continue;
+    const std::int64_t last_column = column(high_x + slack);
+    for (std::int64_t c = column(low_x - slack); c <= last_column; ++c)
+      visit(r * column_count_ + c);
+  }
+}
+
+std::vector<std::uint32_t> EdgeGrid::edges_near(Point2 a, Point2 b, double margin_mm) const {
+  std::vector<std::uint32_t> found;
+  if (edges_.empty()) return found;
+  visit_cells(a, b, margin_mm, [&](std::int64_t cell) {
+    const auto c = static_cast<std::size_t>(cell);
+    found.insert(found.end(), cells_.items.begin() + cells_.begin[c],
+                 cells_.items.begin() + cells_.begin[c + 1]);
+  });
+  std::sort(found.begin(), found.end());
+  found.erase(std::unique(found.begin(), found.end()), found.end());
+  return found;
+}
+
+bool EdgeGrid::contains(Point2 p) const {
+  if (edges_.empty() || p.x < lower_.x || p.x > upper_.x || p.y < lower_.y || p.y > upper_.y)
+    return false;
+  // Even-odd along the ray to the right; half-open, so that a vertex on the ray counts once.
+  bool inside = false;
+  const auto r = static_cast<std::size_t>(row(p.y));
+  for (std::uint32_t i = rows_.begin[r]; i < rows_.begin[r + 1]; ++i) {
+    const Edge& edge = edges_[rows_.items[i]];
+    if ((edge.a.y > p.y) == (edge.b.y > p.y)) continue;
+    const double side = cross(edge.b - edge.a, p - edge.a);
+    if ((side > 0) == (edge.b.y > edge.a.y)) inside = !inside;
+  }
+  return inside || distance_to_edge_mm(p, kOnEdgeMm).has_value();
+}
+
+std::vector<double> EdgeGrid::crossings(Point2 a, Point2 b) const {
+  std::vector<double> shares;
+  const double length = distance(a, b);
+  if (length == 0) return shares;
+  const Point2 direction = (1 / length) * (b - a);
+  const auto add = [&](double along_mm) {
+    if (along_mm >= -kOnEdgeMm && along_mm <= length + kOnEdgeMm)
+      shares.push_back(std::clamp(along_mm / length, 0.0, 1.0));
+  };
+  for (const std::uint32_t e : edges_near(a, b, kOnEdgeMm)) {
+    const Edge& edge = edges_[e];
+    const double side_a = cross(direction, edge.a - a);
+    const double side_b = cross(direction, edge.b - a);
+    if (std::abs(side_a) <= kOnEdgeMm) add(dot(direction, edge.a - a));
+    if (std::abs(side_b) <= kOnEdgeMm) add(dot(direction, edge.b - a));
+    if ((side_a > kOnEdgeMm && side_b < -kOnEdgeMm) || (side_a < -kOnEdgeMm && side_b > kOnEdgeMm))
+      add(dot(direction, lerp(edge.a, edge.b, side_a / (side_a - side_b)) - a));
+  }
+  std::sort(shares.begin(), shares.end());
+  const auto same = [&](double s, double t) { return (t - s) * length <= kOnEdgeMm; };
+  shares.erase(std::unique(shares.begin(), shares.end(), same), shares.end());
+  return shares;
+}
+
+double EdgeGrid::outside_length_mm(Point2 a, Point2 b) const {
+  std::vector<double> shares = crossings(a, b);
+  shares.insert(shares.begin(), 0.0);
+  shares.push_back(1.0);
+  const double length = distance(a, b);
+  double outside = 0;
+  for (std::size_t i = 1; i < shares.size(); ++i) {
+    const double piece = (shares[i] - shares[i - 1]) * length;
+    if (piece > kOnEdgeMm && !contains(lerp(a, b, (shares[i - 1] + shares[i]) / 2)))
+      outside += piece;
+  }
+  return outside;
+}
+
+bool EdgeGrid::covers(Point2 a, Point2 b) const {
+  return contains(a) && contains(b) && outside_length_mm(a, b) <= kOnEdgeMm;
+}
+
+std::optional<double> EdgeGrid::distance_to_edge_mm(Point2 p, double limit_mm) const {
+  if (edges_.empty()) return std::nullopt;
+  std::optional<double> nearest;
+  // Widening boxes around p: most questions end in the first.
+  for (double reach = std::min(limit_mm, cell_mm_);; reach = std::min(limit_mm, 2 * reach)) {
+    for (const std::uint32_t e : edges_near(p, p, reach)) {
+      const double d = distance(p, nearest_on_segment(p, edges_[e].a, edges_[e].b));
+      if (d <= limit_mm && (!nearest || d < *nearest)) nearest = d;
+    }
+    if ((nearest && *nearest <= reach) || reach >= limit_mm) return nearest;
+  }
+}
+
+}  // namespace routebench

@@ -1,0 +1,200 @@
+#include "routebench/geometry/region.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <utility>
+
+#include "clipper_paths.hpp"
+#include "routebench/geometry/vec.hpp"
+
+namespace routebench {
+namespace {
+
+namespace cl = ClipperLib;
+
+// Offsets repeated without cleaning lose area: points a few units apart give mitres that are noise.
+constexpr double kCleanMm = 0.005;
+constexpr double kArcToleranceMm = 0.002;
+constexpr double kMiterLimit = 2.0;
+
+bool point_less(Point2 a, Point2 b) { return a.x != b.x ? a.x < b.x : a.y < b.y; }
+
+bool ring_less(const Ring& a, const Ring& b) {
+  return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end(), point_less);
+}
+
+/// A point that a ring visits twice may be its smallest: then what follows decides where the ring
+/// begins.
+void begin_at_smallest(Ring& ring) {
+  const Point2 smallest = *std::min_element(ring.begin(), ring.end(), point_less);
+  const std::size_t n = ring.size();
+  std::size_t best = n;
+  const auto earlier = [&](std::size_t i, std::size_t j) {
+    for (std::size_t k = 1; k < n; ++k) {
+      const Point2 a = ring[(i + k) % n], b = ring[(j + k) % n];
+      if (a != b) return point_less(a, b);
+    }
+    return false;
+  };
+  for (std::size_t i = 0; i < n; ++i)
+    if (ring[i] == smallest && (best == n || earlier(i, best))) best = i;
+  std::rotate(ring.begin(), ring.begin() + static_cast<std::ptrdiff_t>(best), ring.end());
+}
+
+Ring ring_from_clipper(const cl::Path& path) {
+  Ring ring;
+  ring.reserve(path.size());
+  for (const cl::IntPoint& p : path) ring.push_back(from_clipper(p));
+  begin_at_smallest(ring);
+  return ring;
+}
+
+void add_outer(const cl::PolyNode& node, Polygons& polygons) {
+  Polygon polygon;
+  polygon.outer = ring_from_clipper(node.Contour);
+  for (const cl::PolyNode* hole : node.Childs) {
+    polygon.holes.push_back(ring_from_clipper(hole->Contour));
+    for (const cl::PolyNode* island : hole->Childs) add_outer(*island, polygons);
+  }
+  std::sort(polygon.holes.begin(), polygon.holes.end(), ring_less);
+  polygons.push_back(std::move(polygon));
+}
+
+Polygons clip(cl::ClipType operation, const Polygons& a, const Polygons& b) {
+  cl::Clipper clipper;
+  clipper.AddPaths(to_clipper(a), cl::ptSubject, true);
+  clipper.AddPaths(to_clipper(b), cl::ptClip, true);
+  cl::PolyTree tree;
+  clipper.Execute(operation, tree, cl::pftNonZero, cl::pftNonZero);
+  return from_clipper(tree);
+}
+
+double perimeter_of(const Polygon& polygon) {
+  double sum = perimeter_mm(polygon.outer);
+  for (const Ring& hole : polygon.holes) sum += perimeter_mm(hole);
+  return sum;
+}
+
+}  // namespace
+
+cl::Path to_clipper(const Ring& ring) {
+  cl::Path path;
+  path.reserve(ring.size());
+  for (const Point2 p : ring) path.push_back(to_clipper(p));
+  return path;
+}
+
+cl::Paths to_clipper(const Polygons& polygons) {
+  cl::Paths paths;
+  for (const Polygon& polygon : polygons) {
+    paths.push_back(to_clipper(polygon.outer));
+    for (const Ring& hole : polygon.holes) paths.push_back(to_clipper(hole));
+  }
+  return paths;
+}
+
+Polygons from_clipper(const cl::PolyTree& tree) {
+  Polygons polygons;
+  for (const cl::PolyNode* node : tree.Childs) add_outer(*node, polygons);
+  std::sort(polygons.begin(), polygons.end(),
+            [](const Polygon& a, const Polygon& b) { return ring_less(a.outer, b.outer); });
+  return polygons;
+}
+
+double signed_area_mm2(const Ring& ring) {
+  if (ring.size() < 3) return 0;
+  // Relative to a corner, so that a ring far from the origin loses no digits.
+  double twice = 0;
+  for (std::size_t i = 1; i + 1 < ring.size(); ++i)
+    twice += cross(ring[i] - ring[0], ring[i + 1] - ring[0]);
+  return twice / 2;
+}
+
+double area_mm2(const Polygon& polygon) {
+  double sum = signed_area_mm2(polygon.outer);
+  for (const Ring& hole : polygon.holes) sum += signed_area_mm2(hole);
+  return sum;
+}
+
+double area_mm2(const Polygons& polygons) {
+  double sum = 0;
+  for (const Polygon& polygon : polygons) sum += area_mm2(polygon);
+  return sum;
+}
+
+double perimeter_mm(const Ring& ring) {
+  double sum = 0;
+  for (std::size_t i = 0; i < ring.size(); ++i)
+    sum += distance(ring[i], ring[(i + 1) % ring.size()]);
+  return sum;
+}
+
+double perimeter_mm(const Polygons& polygons) {
+  double sum = 0;
+  for (const Polygon& polygon : polygons) sum += perimeter_of(polygon);
+  return sum;
+}
+
+Box2 bounding_box(const Polygons& polygons) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  Box2 box{{kInfinity, kInfinity}, {-kInfinity, -kInfinity}};
+  for (const Polygon& polygon : polygons)
+    for (const Point2 p : polygon.outer) {
+      box.lower = {std::min(box.lower.x, p.x), std::min(box.lower.y, p.y)};
+      box.upper = {std::max(box.upper.x, p.x), std::max(box.upper.y, p.y)};
+    }
+  return box;
+}
+
+Polygons polygons_from_rings(std::vector<Ring> rings, FillRule rule) {
+  std::erase_if(rings, [](const Ring& ring) { return ring.size() < 3; });
+  for (Ring& ring : rings) begin_at_smallest(ring);
+  std::sort(rings.begin(), rings.end(), ring_less);
+  cl::Clipper clipper;
+  for (const Ring& ring : rings) clipper.AddPath(to_clipper(ring), cl::ptSubject, true);
+  const cl::PolyFillType fill = rule == FillRule::kNonZero   ? cl::pftNonZero
+                                : rule == FillRule::kEvenOdd ? cl::pftEvenOdd
+                                                             : cl::pftPositive;
+  cl::PolyTree tree;
+  clipper.Execute(cl::ctUnion, tree, fill, fill);
+  return from_clipper(tree);
+}
+
+Polygons offset(const Polygons& polygons, double distance_mm, Join join) {
+  if (distance_mm == 0 || polygons.empty()) return polygons;
+  cl::ClipperOffset offsetter(kMiterLimit, kArcToleranceMm * kGridUnitsPerMm);
+  offsetter.AddPaths(to_clipper(polygons), join == Join::kMiter ? cl::jtMiter : cl::jtRound,
+                     cl::etClosedPolygon);
+  cl::Paths paths;
+  offsetter.Execute(paths, distance_mm * kGridUnitsPerMm);
+  cl::CleanPolygons(paths, kCleanMm * kGridUnitsPerMm);
+  // Cleaning moves points, so rings may overlap by as much: the union makes polygons of them again.
+  cl::Clipper clipper;
+  clipper.AddPaths(paths, cl::ptSubject, true);
+  cl::PolyTree tree;
+  clipper.Execute(cl::ctUnion, tree, cl::pftNonZero, cl::pftNonZero);
+  return from_clipper(tree);
+}
+
+Polygons without_thin_parts(const Polygons& polygons, double width_mm) {
+  // A part of just this width must leave a core that cleaning does not take for noise.
+  const double reach_mm = width_mm / 2 - 2 * kCleanMm;
+  if (reach_mm <= 0) return polygons;
+  const Polygons cores = offset(polygons, -reach_mm);
+  return cores.empty() ? cores : intersect(offset(cores, reach_mm), polygons);
+}
+
+Polygons unite(const Polygons& a, const Polygons& b) { return clip(cl::ctUnion, a, b); }
+
+Polygons intersect(const Polygons& a, const Polygons& b) {
+  if (a.empty() || b.empty()) return {};
+  return clip(cl::ctIntersection, a, b);
+}
+
+Polygons subtract(const Polygons& a, const Polygons& b) {
+  return a.empty() || b.empty() ? a : clip(cl::ctDifference, a, b);
+}
+
+}  // namespace routebench

@@ -1,0 +1,24 @@
+#include "routebench/harness/demand.hpp"
+
+#include "routebench/geometry/region.hpp"
+
+namespace routebench {
+
+Demand demand_of(const Layer& layer, const Task& task) {
+  Demand demand{.outline = layer.polygons, .inside = layer.polygons, .dense = {}, .sparse = {}};
+  // One wall at a time, as walls are laid: an offset by many widths at once is far slower and, in
+  // narrow places, another region.
+  for (int wall = 0; wall < task.perimeters && !demand.inside.empty(); ++wall)
+    demand.inside = offset(demand.inside, -task.spacing_mm());
+  if (task.density >= 1) {
+    demand.dense = demand.inside;
+  } else if (layer.solid.empty()) {
+    demand.sparse = demand.inside;
+  } else {
+    demand.dense = without_thin_parts(intersect(demand.inside, layer.solid), task.line_width_mm);
+    demand.sparse = subtract(demand.inside, demand.dense);
+  }
+  return demand;
+}
+
+}  // namespace routebench

@@ -1,0 +1,42 @@
+# What turns a planner's source into something that a program knows.
+
+# routebench_add_planner(<name> <source>...)
+#
+# Builds a planner as a plugin: the shared library <name>.so, loaded at run time. The source ends with
+# ROUTEBENCH_REGISTER(<name>) { ... }.
+function(routebench_add_planner name)
+  add_library(${name} MODULE ${ARGN})
+  set_target_properties(${name} PROPERTIES PREFIX "" CXX_STANDARD 20 CXX_STANDARD_REQUIRED ON)
+  target_link_libraries(${name} PRIVATE routebench::planning)
+endfunction()
+
+# routebench_builtin_planners(<name>...)
+#
+# Compiles <name>.cpp for every name into the static library routebench::planners, and writes the one
+# function that registers them: no static initialiser, which a linker drops from an archive in
+# silence.
+function(routebench_builtin_planners)
+  set(declarations "")
+  set(calls "")
+  set(sources "")
+  foreach(name IN LISTS ARGN)
+    string(APPEND declarations "void routebench_register_${name}(routebench::Registry& registry);\n")
+    string(APPEND calls "  routebench_register_${name}(registry);\n")
+    list(APPEND sources ${name}.cpp)
+  endforeach()
+  set(generated ${CMAKE_CURRENT_BINARY_DIR}/builtin_planners.cpp)
+  file(CONFIGURE OUTPUT ${generated} @ONLY CONTENT [=[
+// Generated from the list in planners/CMakeLists.txt.
+#include "routebench/planning/plugin.hpp"
+
+@declarations@
+namespace routebench {
+void register_builtin_planners([[maybe_unused]] Registry& registry) {
+@calls@}
+}  // namespace routebench
+]=])
+  add_library(routebench_planners STATIC ${generated} ${sources})
+  add_library(routebench::planners ALIAS routebench_planners)
+  target_compile_definitions(routebench_planners PRIVATE ROUTEBENCH_BUILTIN)
+  target_link_libraries(routebench_planners PUBLIC routebench::planning PRIVATE routebench_warnings)
+endfunction()
