@@ -152,7 +152,7 @@ TEST(Contender, SeedsDifferFromLayerToLayerAndFromRunToRun) {
   std::set<double> seen;
   for (int layer = 0; layer < 20; ++layer)
     for (std::uint64_t seed = 0; seed < 20; ++seed) seen.insert(told(layer, seed));
-  EXPECT_GE(seen.size(), 395u);  // 400 draws of 20 bits: a collision is possible, five are not
+  EXPECT_GE(seen.size(), 395u);  // 400 draws of 19 bits: a collision is possible, five are not
   EXPECT_EQ(told(3, 9), told(3, 9));
 }
 

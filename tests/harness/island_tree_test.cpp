@@ -28,11 +28,11 @@ double squared_distance_to(const Polygon& island, Point2 p) {
 Polygons crowd(std::uint64_t seed) {
   Polygons crowd = test::random_polygons(seed, 12, 60);
   for (int i = 0; i < 40; ++i)
-    crowd.push_back({test::rectangle(70 + 3 * (i % 8), 3 * (i / 8), 72 + 3 * (i % 8),
+    crowd.push_back({test::rectangle(85 + 3 * (i % 8), 3 * (i / 8), 87 + 3 * (i % 8),
                                      3 * (i / 8) + 0.1 + 0.04 * i),
                      {}});
-  crowd.push_back({test::rectangle(-10, -10, 110, 110),
-                   {{{-9, -9}, {-9, 109}, {109, 109}, {109, -9}}}});  // a frame around all
+  crowd.push_back({test::rectangle(-30, -30, 120, 120),
+                   {{{-29, -29}, {-29, 119}, {119, 119}, {119, -29}}}});  // a frame around all
   return crowd;
 }
 

@@ -53,7 +53,7 @@ class Leash : public Planner {
   Params params_;
 };
 
-/// Fill: one stroke whose end tells the seed (its low 20 bits).
+/// Fill: one stroke whose end tells the seed (its low 19 bits).
 class SeedTeller : public Planner {
  public:
   struct Params {
@@ -62,7 +62,7 @@ class SeedTeller : public Planner {
   static PlannerInfo info() { return {"seed_teller", PlannerRole::kFill, "tells its seed", ""}; }
   explicit SeedTeller(const Params&) {}
   [[nodiscard]] Route plan(const Layer&, const PlanContext& context) const override {
-    const auto told = static_cast<double>(context.seed & 0xFFFFF);
+    const auto told = static_cast<double>(context.seed & 0x7FFFF);
     return {{{{{0, 0}, {told, 1}}, context.line_width_mm}}};
   }
 };
