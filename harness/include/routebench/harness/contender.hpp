@@ -6,6 +6,7 @@
 #include <optional>
 #include <stop_token>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "routebench/geometry/types.hpp"
@@ -24,9 +25,15 @@ struct SlotSpec {
 
 /// What is printed before what.
 enum class LayerOrder {
-  kIsland,  ///< everything of one island before the next, islands by nearest entry
-  kStage,   ///< all walls, then all insides
+  kIsland,  ///< everything of one island before the next, islands by nearest boundary; planners get
+            ///< one island at a time
+  kStage,   ///< all walls, then all that is dense, then all that is sparse; planners get the whole
+            ///< layer and choose the order of its islands themselves
 };
+/// "island", "stage".
+[[nodiscard]] std::string_view to_string(LayerOrder order);
+/// Throws Error{kBadInput} for an unknown name.
+[[nodiscard]] LayerOrder layer_order(std::string_view name);
 
 struct ContenderSpec {
   std::string name;
@@ -37,6 +44,7 @@ struct ContenderSpec {
 
 /// What a stroke is for.
 enum class StrokeKind : std::uint8_t { kWall, kDense, kSparse };
+[[nodiscard]] std::string_view to_string(StrokeKind kind);  ///< "wall", "dense", "sparse"
 
 struct PlannedLayer {
   Route route;
@@ -53,9 +61,15 @@ class Contender {
   Contender(ContenderSpec spec, const Registry& registry);
 
   /// Plans one layer: cuts nothing itself (see demand_of), hands each region to its planner, puts
-  /// the strokes together in the contender's order. `origin` anchors patterns (lower corner of the
-  /// model). Throws what planners throw; Error{kBadInput} if a planner returns a stroke of fewer
-  /// than two points, a non-finite coordinate or a width that is not positive.
+  /// the strokes together in the contender's order.
+  ///
+  /// Takes  `origin`, which anchors patterns (lower corner of the model), and the seed of the whole
+  ///        run: each layer's planners get one that is mixed from it and the layer's index.
+  /// Throws Error{kStopped} when asked to stop; Error{kBadInput} naming planner and layer if a
+  ///        planner throws anything else, or returns a stroke of fewer than two points, a
+  ///        coordinate that is not finite or a kilometre away, or a width that is not positive.
+  ///        std::bad_alloc passes as it is.
+  /// Cost   beside the planners' own near-linear in the layer's vertices.
   [[nodiscard]] PlannedLayer plan(const Layer& layer, const Demand& demand, const Task& task,
                                   Point2 origin, std::uint64_t seed, std::stop_token stop) const;
 

@@ -1,0 +1,224 @@
+#include "routebench/harness/contender.hpp"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <ctime>
+#include <exception>
+#include <new>
+#include <utility>
+
+#include "island_tree.hpp"
+#include "routebench/geometry/error.hpp"
+
+namespace routebench {
+namespace {
+
+constexpr std::array<std::string_view, 2> kOrderNames = {"island", "stage"};
+constexpr std::array<std::string_view, 3> kKindNames = {"wall", "dense", "sparse"};
+
+/// No printer reaches further, and arithmetic on the grid stays exact well beyond.
+constexpr double kFarthestMm = 1e6;
+
+std::unique_ptr<const Planner> make_planner(const SlotSpec& slot, PlannerRole role,
+                                            const std::string& contender, const Registry& registry,
+                                            ParamSet& resolved) {
+  const Registry::Entry& entry = registry.at(slot.planner);
+  if (entry.info.role != role) {
+    const bool shell = role == PlannerRole::kShell;
+    std::string known;
+    for (const auto& [name, other] : registry.entries())
+      if (other.info.role == role) known += (known.empty() ? "" : ", ") + name;
+    throw Error(ErrorKind::kBadInput, "contender " + contender + ": " + slot.planner + " is no " +
+                                          (shell ? "shell" : "fill") + " planner; name it as " +
+                                          (shell ? "fill" : "shell") + ", or take one of: " +
+                                          (known.empty() ? "(none is registered)" : known));
+  }
+  resolved = entry.resolve(slot.params);
+  return entry.make(slot.params);
+}
+
+/// Spreads the seed of a run over its layers (finaliser of splitmix64: every bit of the input moves
+/// every bit of the output).
+std::uint64_t mixed_seed(std::uint64_t seed, int layer_index) {
+  std::uint64_t x = seed + 0x9E3779B97F4A7C15u * (static_cast<std::uint64_t>(layer_index) + 1);
+  x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9u;
+  x = (x ^ (x >> 27)) * 0x94D049BB133111EBu;
+  return x ^ (x >> 31);
+}
+
+std::int64_t thread_cpu_ns() {
+  std::timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
+}
+
+bool is_place(Point2 p) {
+  return std::abs(p.x) <= kFarthestMm && std::abs(p.y) <= kFarthestMm;  // false for NaN
+}
+
+/// What is wrong with a route, or nothing.
+std::string fault_of(const Route& route) {
+  for (std::size_t i = 0; i < route.strokes.size(); ++i) {
+    const Stroke& stroke = route.strokes[i];
+    const std::string which = "stroke " + std::to_string(i) + " of the returned route ";
+    if (stroke.points.size() < 2)
+      return which + "has " + std::to_string(stroke.points.size()) +
+             " points; it needs two or more";
+    if (!(stroke.width_mm > 0) || !std::isfinite(stroke.width_mm))
+      return which + "has the width " + std::to_string(stroke.width_mm) +
+             " mm; it must be positive";
+    for (std::size_t k = 0; k < stroke.points.size(); ++k) {
+      const Point2 p = stroke.points[k];
+      if (!is_place(p))
+        return which + "has point " + std::to_string(k) + " at (" + std::to_string(p.x) + ", " +
+               std::to_string(p.y) + "); coordinates must be finite and within a kilometre";
+    }
+  }
+  return {};
+}
+
+/// Puts one layer's route together, call by call.
+class LayerAssembly {
+ public:
+  LayerAssembly(const Layer& layer, const Task& task, PlanContext context)
+      : layer_(layer), task_(task), context_(std::move(context)) {}
+
+  /// Has one planner lay a region from where the nozzle is, and appends its route.
+  void lay(const Planner* planner, const std::string& name, StrokeKind kind, Polygons region) {
+    if (planner == nullptr || region.empty()) return;
+    stop_if_asked(context_);
+    const Layer part{layer_.index,      layer_.z_mm, layer_.height_mm,
+                     std::move(region), {},          layer_.repaired};
+    context_.density = kind == StrokeKind::kSparse ? task_.density : 1;
+    Route route = timed_plan(*planner, name, part);
+    if (const std::string fault = fault_of(route); !fault.empty()) throw failure(name, fault);
+    if (route.strokes.empty()) return;
+    context_.start = route.strokes.back().points.back();
+    planned_.kinds.insert(planned_.kinds.end(), route.strokes.size(), kind);
+    std::move(route.strokes.begin(), route.strokes.end(),
+              std::back_inserter(planned_.route.strokes));
+  }
+
+  [[nodiscard]] Point2 nozzle() const { return context_.start; }
+  [[nodiscard]] PlannedLayer take() { return std::move(planned_); }
+
+ private:
+  Route timed_plan(const Planner& planner, const std::string& name, const Layer& part) {
+    using Clock = std::chrono::steady_clock;
+    try {
+      const std::int64_t cpu_begin = thread_cpu_ns();
+      const Clock::time_point begin = Clock::now();
+      Route route = planner.plan(part, context_);
+      const Clock::time_point end = Clock::now();
+      planned_.plan_cpu_ns += thread_cpu_ns() - cpu_begin;
+      planned_.plan_wall_ns +=
+          std::chrono::duration_cast<std::chrono::nanoseconds>(end - begin).count();
+      return route;
+    } catch (const std::bad_alloc&) {
+      throw;
+    } catch (const Error& error) {
+      if (error.kind() == ErrorKind::kStopped) throw;
+      throw failure(name, error.what());
+    } catch (const std::exception& error) {
+      throw failure(name, error.what());
+    } catch (...) {
+      throw failure(name, "it threw something that is no std::exception");
+    }
+  }
+
+  [[nodiscard]] Error failure(const std::string& name, const std::string& what) const {
+    return {ErrorKind::kBadInput,
+            "planner " + name + ", layer " + std::to_string(layer_.index) + ": " + what};
+  }
+
+  const Layer& layer_;
+  const Task& task_;
+  PlanContext context_;
+  PlannedLayer planned_;
+};
+
+/// What has to be laid on one island.
+struct IslandWork {
+  Polygons walls;
+  Polygons dense;
+  Polygons sparse;
+};
+
+void share_out(const Polygons& regions, const IslandTree& tree, std::vector<IslandWork>& islands,
+               Polygons IslandWork::*part) {
+  for (const Polygon& region : regions)
+    (islands[islands.size() == 1 ? 0 : tree.island_of(region)].*part).push_back(region);
+}
+
+}  // namespace
+
+std::string_view to_string(LayerOrder order) {
+  return kOrderNames[static_cast<std::size_t>(order)];
+}
+
+LayerOrder layer_order(std::string_view name) {
+  const auto* found = std::find(kOrderNames.begin(), kOrderNames.end(), name);
+  if (found == kOrderNames.end())
+    throw Error(ErrorKind::kBadInput,
+                "order '" + std::string(name) + "' is unknown; it is island or stage");
+  return static_cast<LayerOrder>(found - kOrderNames.begin());
+}
+
+std::string_view to_string(StrokeKind kind) { return kKindNames[static_cast<std::size_t>(kind)]; }
+
+Contender::Contender(ContenderSpec spec, const Registry& registry) : spec_(std::move(spec)) {
+  if (!spec_.shell && !spec_.fill)
+    throw Error(ErrorKind::kBadInput,
+                "contender " + spec_.name + ": it has no planner; give it a shell, a fill or both");
+  if (spec_.shell)
+    shell_ = make_planner(*spec_.shell, PlannerRole::kShell, spec_.name, registry, shell_params_);
+  if (spec_.fill)
+    fill_ = make_planner(*spec_.fill, PlannerRole::kFill, spec_.name, registry, fill_params_);
+}
+
+PlannedLayer Contender::plan(const Layer& layer, const Demand& demand, const Task& task,
+                             Point2 origin, std::uint64_t seed, std::stop_token stop) const {
+  PlanContext context;
+  context.start = task.start_mm;
+  context.origin = origin;
+  context.line_width_mm = task.line_width_mm;
+  context.spacing_mm = task.spacing_mm();
+  context.perimeters = task.perimeters;
+  context.seed = mixed_seed(seed, layer.index);
+  context.stop = std::move(stop);
+  LayerAssembly assembly(layer, task, std::move(context));
+
+  const std::string shell_name = spec_.shell ? spec_.shell->planner : std::string();
+  const std::string fill_name = spec_.fill ? spec_.fill->planner : std::string();
+  const auto lay = [&](IslandWork work) {
+    assembly.lay(shell_.get(), shell_name, StrokeKind::kWall, std::move(work.walls));
+    assembly.lay(fill_.get(), fill_name, StrokeKind::kDense, std::move(work.dense));
+    assembly.lay(fill_.get(), fill_name, StrokeKind::kSparse, std::move(work.sparse));
+  };
+  const Polygons walls = shell_ && task.perimeters > 0 ? demand.outline : Polygons{};
+  const Polygons dense = fill_ ? demand.dense : Polygons{};
+  const Polygons sparse = fill_ && task.density > 0 ? demand.sparse : Polygons{};
+  if (spec_.order == LayerOrder::kStage || demand.outline.empty()) {
+    lay({walls, dense, sparse});
+    return assembly.take();
+  }
+
+  IslandTree tree(demand.outline);
+  std::vector<IslandWork> islands(demand.outline.size());
+  for (std::size_t i = 0; i < walls.size(); ++i) islands[i].walls = {walls[i]};
+  share_out(dense, tree, islands, &IslandWork::dense);
+  share_out(sparse, tree, islands, &IslandWork::sparse);
+  for (std::size_t i = 0; i < islands.size(); ++i) {
+    const IslandWork& work = islands[i];
+    if (work.walls.empty() && work.dense.empty() && work.sparse.empty()) tree.take(i);
+  }
+  while (const auto next = tree.nearest(assembly.nozzle())) {
+    tree.take(*next);
+    lay(std::move(islands[*next]));
+  }
+  return assembly.take();
+}
+
+}  // namespace routebench

@@ -1,0 +1,164 @@
+#include "routebench/harness/pipeline.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <numeric>
+#include <utility>
+
+#include "routebench/geometry/error.hpp"
+#include "routebench/geometry/layer_io.hpp"
+#include "routebench/geometry/region.hpp"
+#include "routebench/geometry/solid.hpp"
+
+namespace routebench {
+namespace {
+
+/// Heights that were written as text and read back may differ by this much.
+constexpr double kHeightToleranceMm = 1e-6;
+
+bool is_layer_file(const std::string& spec) {
+  std::string extension = std::filesystem::path(spec).extension().string();
+  for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return extension == ".wkt";
+}
+
+/// A bead of another height than its layer's would make every volume wrong.
+void require_task_height(const std::string& file, const std::vector<Layer>& layers,
+                         const Task& task) {
+  for (const Layer& layer : layers) {
+    if (std::abs(layer.height_mm - task.layer_height_mm) <= kHeightToleranceMm) continue;
+    throw Error(ErrorKind::kBadInput, file + ": layer " + std::to_string(layer.index) + " is " +
+                                          to_string(ParamValue(layer.height_mm)) +
+                                          " mm high but the task's " + "layer_height_mm is " +
+                                          to_string(ParamValue(task.layer_height_mm)) +
+                                          "; set it to the file's");
+  }
+}
+
+SlicedModel slice_mesh_model(const std::string& spec, const Task& task,
+                             const SliceModelOptions& options, const ParallelFor& parallel_for) {
+  Model model = load_model(spec, {.repair = options.repair});
+  Slices slices = slice_mesh(
+      model.mesh,
+      {.layer_height_mm = task.layer_height_mm, .method = options.method, .repair = options.repair},
+      spec, parallel_for);
+  SlicedModel sliced;
+  sliced.mesh = model.report;
+  sliced.mesh_hash = model.content_hash;
+  sliced.warnings = std::move(model.warnings);
+  sliced.warnings.insert(sliced.warnings.end(), slices.report.warnings.begin(),
+                         slices.report.warnings.end());
+  sliced.report = std::move(slices.report);
+  sliced.layers = std::move(slices.layers);
+  return sliced;
+}
+
+SlicedModel read_layer_file(const std::string& spec, const Task& task) {
+  SlicedModel sliced;
+  sliced.layers = read_wkt(spec, task.layer_height_mm);
+  require_task_height(spec, sliced.layers, task);
+  for (const Layer& layer : sliced.layers) sliced.report.repaired_layers += layer.repaired ? 1 : 0;
+  return sliced;
+}
+
+Point2 lower_corner(const std::vector<Layer>& layers) {
+  Point2 corner{};
+  bool found = false;
+  for (const Layer& layer : layers) {
+    if (layer.polygons.empty()) continue;
+    const Point2 lower = bounding_box(layer.polygons).lower;
+    corner = found ? Point2{std::min(corner.x, lower.x), std::min(corner.y, lower.y)} : lower;
+    found = true;
+  }
+  return corner;
+}
+
+}  // namespace
+
+PlannerSet load_planners(std::span<const std::string> plugin_files) {
+  PlannerSet planners;
+  register_builtin_planners(planners.registry);
+  for (const std::string& file : plugin_files)
+    planners.plugins.push_back(load_plugin(planners.registry, file));
+  return planners;
+}
+
+void require_all_loaded(const PlannerSet& planners) {
+  for (const PluginRecord& plugin : planners.plugins)
+    if (!plugin.loaded)
+      throw Error(ErrorKind::kBadInput,
+                  "plugin " + plugin.file + ": refused: " + plugin.refused_because);
+}
+
+SlicedModel slice_model(const std::string& spec, const Task& task, const SliceModelOptions& options,
+                        const ParallelFor& parallel_for) {
+  SlicedModel sliced = is_layer_file(spec) ? read_layer_file(spec, task)
+                                           : slice_mesh_model(spec, task, options, parallel_for);
+  sliced.spec = spec;
+  sliced.origin = lower_corner(sliced.layers);
+  find_solid(sliced.layers, task.skin_layers, parallel_for);
+  return sliced;
+}
+
+PreparedModel prepare_model(const std::string& spec, const Task& task,
+                            const SliceModelOptions& options, const ParallelFor& parallel_for) {
+  PreparedModel model{slice_model(spec, task, options, parallel_for), {}};
+  const std::vector<Layer>& layers = model.sliced.layers;
+  model.demands.resize(layers.size());
+  parallel_for(layers.size(),
+               [&](std::size_t i) { model.demands[i] = demand_of(layers[i], task); });
+  return model;
+}
+
+std::vector<std::size_t> all_layers(const SlicedModel& sliced) {
+  std::vector<std::size_t> chosen(sliced.layers.size());
+  std::iota(chosen.begin(), chosen.end(), std::size_t{0});
+  return chosen;
+}
+
+std::vector<PlannedLayer> plan_layers(const Contender& contender, const PreparedModel& model,
+                                      std::span<const std::size_t> chosen, const Task& task,
+                                      std::uint64_t seed, std::stop_token stop,
+                                      const ParallelFor& parallel_for) {
+  std::vector<PlannedLayer> planned(chosen.size());
+  parallel_for(chosen.size(), [&](std::size_t i) {
+    planned[i] = contender.plan(model.sliced.layers[chosen[i]], model.demands[chosen[i]], task,
+                                model.sliced.origin, seed, stop);
+  });
+  return planned;
+}
+
+std::optional<Point2> end_of(const Route& route) {
+  if (route.strokes.empty()) return std::nullopt;
+  return route.strokes.back().points.back();
+}
+
+JudgedCell judge_layers(const Judge& judge, const PreparedModel& model,
+                        std::span<const std::size_t> chosen, std::span<const PlannedLayer> planned,
+                        const ParallelFor& parallel_for) {
+  // Where each layer is entered from is known before any is judged, so that they can be judged at
+  // the same time.
+  std::vector<std::optional<Point2>> entered_from(planned.size());
+  std::optional<Point2> nozzle;
+  for (std::size_t i = 0; i < planned.size(); ++i) {
+    entered_from[i] = nozzle;
+    if (const auto end = end_of(planned[i].route)) nozzle = end;
+  }
+  const std::size_t wall_ns = metric_index("plan_wall_ns");
+  const std::size_t cpu_ns = metric_index("plan_cpu_ns");
+  JudgedCell cell;
+  cell.layers.resize(planned.size());
+  parallel_for(planned.size(), [&](std::size_t i) {
+    LayerScore& score = cell.layers[i];
+    score = judge.score(model.sliced.layers[chosen[i]], model.demands[chosen[i]], planned[i].route,
+                        entered_from[i]);
+    score.scores[wall_ns] = static_cast<double>(planned[i].plan_wall_ns);
+    score.scores[cpu_ns] = static_cast<double>(planned[i].plan_cpu_ns);
+  });
+  cell.totals = judge.total(cell.layers);
+  cell.verdict = judge.verdict(cell.totals);
+  return cell;
+}
+
+}  // namespace routebench
