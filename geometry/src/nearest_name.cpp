@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <limits>
+#include <utility>
 
 namespace routebench {
 namespace {
@@ -22,8 +23,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
         row[j] = std::min(row[j], before_last[j - 2] + 1);
       }
     }
-    before_last = std::move(last);
-    last = std::move(row);
+    before_last = std::exchange(last, std::move(row));
   }
   return last[b.size()];
 }
