@@ -1,0 +1,242 @@
+#include "cut_triangles.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <string>
+#include <tuple>
+#include <utility>
+
+#include "routebench/geometry/error.hpp"
+#include "routebench/geometry/grid.hpp"
+
+namespace routebench::slicing {
+namespace {
+
+constexpr std::size_t kMaxCuts = std::size_t{1} << 27;  // 4 GiB
+constexpr std::size_t kVerticesPerBlock = std::size_t{1} << 16;
+constexpr std::size_t kTrianglesPerBlock = std::size_t{1} << 16;
+constexpr std::size_t kMaxBlockCursors = std::size_t{1} << 22;  // 32 MiB
+
+using Triangle = std::array<std::uint32_t, 3>;
+
+/// The planes that a triangle crosses: first, ..., last - 1.
+struct Span {
+  int first;
+  int last;
+};
+
+/// A mesh with one level for each vertex.
+class LevelledMesh {
+ public:
+  LevelledMesh(const Mesh& mesh, const Planes& planes, const ParallelFor& parallel_for)
+      : mesh_(mesh), planes_(planes), levels_(mesh.vertices.size()) {
+    const std::size_t blocks = (levels_.size() + kVerticesPerBlock - 1) / kVerticesPerBlock;
+    parallel_for(blocks, [&](std::size_t block) {
+      const std::size_t end = std::min(levels_.size(), (block + 1) * kVerticesPerBlock);
+      for (std::size_t v = block * kVerticesPerBlock; v < end; ++v)
+        levels_[v] = planes.level(mesh.vertices[v].z);
+    });
+  }
+
+  [[nodiscard]] std::size_t triangles() const { return mesh_.triangles.size(); }
+  [[nodiscard]] std::size_t planes() const { return static_cast<std::size_t>(planes_.count); }
+
+  [[nodiscard]] Span span(std::size_t triangle) const {
+    const Triangle& corners = mesh_.triangles[triangle];
+    const auto [first, last] =
+        std::minmax({levels_[corners[0]], levels_[corners[1]], levels_[corners[2]]});
+    return {first, last};
+  }
+
+  /// The cut of a triangle by a plane that it crosses. Going round the triangle, exactly one edge
+  /// leads down through the plane and one leads up; seen from outside the triangle runs
+  /// counter-clockwise, so the line from the first to the second has the material on its left.
+  [[nodiscard]] Cut cut(std::size_t triangle, int plane) const {
+    static constexpr std::array<std::uint8_t, 7> kDown{0, 0, 1, 1, 2, 0, 2};
+    static constexpr std::array<std::uint8_t, 7> kUp{0, 2, 0, 2, 1, 1, 0};
+    const Triangle& corners = mesh_.triangles[triangle];
+    const auto above = [&](std::size_t corner) {
+      return levels_[corners[corner]] > plane ? 1u : 0u;
+    };
+    const unsigned corners_above = above(0) | above(1) << 1 | above(2) << 2;
+    const EdgeKey from = edge(corners, kDown[corners_above]);
+    return {from, edge(corners, kUp[corners_above]), cut_point(mesh_, from, planes_.z_mm(plane))};
+  }
+
+ private:
+  static EdgeKey edge(const Triangle& corners, std::size_t begin) {
+    const auto [low, high] = std::minmax(corners[begin], corners[begin == 2 ? 0 : begin + 1]);
+    return EdgeKey{low} << 32 | high;
+  }
+
+  const Mesh& mesh_;
+  const Planes& planes_;
+  std::vector<int> levels_;
+};
+
+/// Consecutive triangles that one call of a parallel loop handles. There are as many blocks as the
+/// input asks for, whatever the number of threads.
+class Blocks {
+ public:
+  Blocks(std::size_t triangles, std::size_t planes) : triangles_(triangles) {
+    const std::size_t affordable = std::max<std::size_t>(1, kMaxBlockCursors / (planes + 1));
+    count_ = std::clamp<std::size_t>(triangles / kTrianglesPerBlock, 1, affordable);
+  }
+  [[nodiscard]] std::size_t count() const { return count_; }
+  [[nodiscard]] std::size_t begin(std::size_t block) const { return triangles_ * block / count_; }
+  [[nodiscard]] std::size_t end(std::size_t block) const { return begin(block + 1); }
+
+ private:
+  std::size_t triangles_;
+  std::size_t count_;
+};
+
+/// Counts the cuts of each block in each layer: entry [block * planes + plane].
+std::vector<std::size_t> count_cuts(const LevelledMesh& mesh, const Blocks& blocks,
+                                    const ParallelFor& parallel_for) {
+  const std::size_t planes = mesh.planes();
+  std::vector<std::size_t> counts(blocks.count() * planes);
+  parallel_for(blocks.count(), [&](std::size_t block) {
+    // Where triangles begin and end; the running sum of the difference is the count.
+    std::vector<std::size_t> begun(planes + 1), ended(planes + 1);
+    for (std::size_t t = blocks.begin(block); t < blocks.end(block); ++t) {
+      const Span span = mesh.span(t);
+      ++begun[static_cast<std::size_t>(span.first)];
+      ++ended[static_cast<std::size_t>(span.last)];
+    }
+    std::size_t active = 0;
+    for (std::size_t plane = 0; plane < planes; ++plane) {
+      active = active + begun[plane] - ended[plane];
+      counts[block * planes + plane] = active;
+    }
+  });
+  return counts;
+}
+
+/// Sets the layers' places in the table and turns the counts into the place of each block's first
+/// cut in each layer.
+CutTable lay_out(std::vector<std::size_t>& counts, std::size_t blocks, std::size_t planes,
+                 const std::string& model_name) {
+  CutTable table;
+  table.begin.resize(planes + 1);
+  std::size_t total = 0;
+  for (std::size_t plane = 0; plane < planes; ++plane) {
+    table.begin[plane] = total;
+    for (std::size_t block = 0; block < blocks; ++block)
+      total += std::exchange(counts[block * planes + plane], total);
+    if (total > kMaxCuts)
+      throw Error(ErrorKind::kBadInput,
+                  model_name + ": the layers would have more than " + std::to_string(kMaxCuts) +
+                      " line segments: take thicker layers or a coarser model");
+  }
+  table.begin[planes] = total;
+  table.cuts.resize(total);
+  return table;
+}
+
+/// Every triangle pushes its cuts into the planes that it crosses.
+void fill_bucketwise(const LevelledMesh& mesh, const Blocks& blocks,
+                     std::vector<std::size_t>& cursors, CutTable& table,
+                     const ParallelFor& parallel_for) {
+  parallel_for(blocks.count(), [&](std::size_t block) {
+    std::size_t* const cursor = cursors.data() + block * mesh.planes();
+    for (std::size_t t = blocks.begin(block); t < blocks.end(block); ++t) {
+      const Span span = mesh.span(t);
+      for (int plane = span.first; plane < span.last; ++plane)
+        table.cuts[cursor[plane]++] = mesh.cut(t, plane);
+    }
+  });
+}
+
+/// The plane rises through sorted events; the triangles that it meets form the active set.
+void fill_sweeping(const LevelledMesh& mesh, CutTable& table) {
+  struct Event {
+    int plane;
+    bool insert;
+    std::uint32_t triangle;
+  };
+  std::vector<Event> events;
+  for (std::size_t t = 0; t < mesh.triangles(); ++t) {
+    const Span span = mesh.span(t);
+    if (span.first == span.last) continue;
+    events.push_back({span.first, true, static_cast<std::uint32_t>(t)});
+    events.push_back({span.last, false, static_cast<std::uint32_t>(t)});
+  }
+  std::sort(events.begin(), events.end(), [](const Event& a, const Event& b) {
+    return std::tuple(a.plane, a.insert, a.triangle) < std::tuple(b.plane, b.insert, b.triangle);
+  });
+
+  std::vector<std::uint32_t> active;
+  std::vector<std::uint32_t> place(mesh.triangles());  // of an active triangle in `active`
+  auto event = events.begin();
+  for (std::size_t plane = 0; plane < mesh.planes(); ++plane) {
+    for (; event != events.end() && event->plane <= static_cast<int>(plane); ++event) {
+      if (event->insert) {
+        place[event->triangle] = static_cast<std::uint32_t>(active.size());
+        active.push_back(event->triangle);
+      } else {
+        place[active.back()] = place[event->triangle];
+        active[place[event->triangle]] = active.back();
+        active.pop_back();
+      }
+    }
+    std::size_t cursor = table.begin[plane];
+    for (const std::uint32_t t : active)
+      table.cuts[cursor++] = mesh.cut(t, static_cast<int>(plane));
+  }
+}
+
+/// Every plane asks every triangle.
+void fill_naively(const LevelledMesh& mesh, CutTable& table, const ParallelFor& parallel_for) {
+  parallel_for(mesh.planes(), [&](std::size_t layer) {
+    const int plane = static_cast<int>(layer);
+    std::size_t cursor = table.begin[layer];
+    for (std::size_t t = 0; t < mesh.triangles(); ++t) {
+      const Span span = mesh.span(t);
+      if (span.first <= plane && plane < span.last) table.cuts[cursor++] = mesh.cut(t, plane);
+    }
+  });
+}
+
+}  // namespace
+
+int Planes::level(double z_mm) const noexcept {
+  // The division may be wrong by one; the comparison with the planes themselves decides.
+  const double estimate = std::clamp(z_mm / height_mm + 0.5, 0.0, static_cast<double>(count));
+  int level = static_cast<int>(estimate);
+  while (level > 0 && this->z_mm(level - 1) > z_mm) --level;
+  while (level < count && this->z_mm(level) <= z_mm) ++level;
+  return level;
+}
+
+Point2 cut_point(const Mesh& mesh, EdgeKey edge, double z_mm) {
+  const Point3* lower = &mesh.vertices[edge >> 32];
+  const Point3* upper = &mesh.vertices[edge & std::numeric_limits<std::uint32_t>::max()];
+  if (lower->z > upper->z) std::swap(lower, upper);
+  const double share = (z_mm - lower->z) / (upper->z - lower->z);
+  return snap(
+      Point2{lower->x + share * (upper->x - lower->x), lower->y + share * (upper->y - lower->y)});
+}
+
+CutTable cut_triangles(const Mesh& mesh, const Planes& planes, SliceMethod method,
+                       const std::string& model_name, const ParallelFor& parallel_for) {
+  const LevelledMesh levelled(mesh, planes, parallel_for);
+  const Blocks blocks(levelled.triangles(), levelled.planes());
+  std::vector<std::size_t> cursors = count_cuts(levelled, blocks, parallel_for);
+  CutTable table = lay_out(cursors, blocks.count(), levelled.planes(), model_name);
+  switch (method) {
+    case SliceMethod::kBucket:
+      fill_bucketwise(levelled, blocks, cursors, table, parallel_for);
+      break;
+    case SliceMethod::kSweep:
+      fill_sweeping(levelled, table);
+      break;
+    case SliceMethod::kNaive:
+      fill_naively(levelled, table, parallel_for);
+      break;
+  }
+  return table;
+}
+
+}  // namespace routebench::slicing

@@ -1,0 +1,61 @@
+#pragma once
+/// Where triangles meet planes: the first step of slicing.
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "routebench/geometry/parallel.hpp"
+#include "routebench/geometry/slice.hpp"
+#include "routebench/geometry/types.hpp"
+
+namespace routebench::slicing {
+
+/// The cutting planes z_k = (k + 1/2) height_mm, k in [0, count).
+struct Planes {
+  double height_mm = 0;
+  int count = 0;
+
+  [[nodiscard]] double z_mm(int plane) const noexcept { return (plane + 0.5) * height_mm; }
+
+  /// Number of planes at or below a height, mm. Every question about above and below is answered by
+  /// comparing this number with a plane's, so that no two answers can contradict each other: a
+  /// point is above plane k if and only if its level is greater than k.
+  [[nodiscard]] int level(double z_mm) const noexcept;
+};
+
+/// Names a mesh edge: the smaller vertex index in the upper half, the larger one in the lower.
+using EdgeKey = std::uint64_t;
+
+/// Where one triangle meets one plane: a straight line from `start` on edge `from` to edge `to`,
+/// the material on its left. The end is the start of the neighbouring triangle's cut.
+struct Cut {
+  EdgeKey from = 0;
+  EdgeKey to = 0;
+  Point2 start;
+};
+
+/// The cuts of all layers, layer after layer.
+struct CutTable {
+  std::vector<Cut> cuts;
+  std::vector<std::size_t> begin;  ///< of each layer in `cuts`, and the end of the last one
+
+  [[nodiscard]] std::span<const Cut> layer(std::size_t index) const {
+    return std::span(cuts).subspan(begin[index], begin[index + 1] - begin[index]);
+  }
+};
+
+/// Where an edge that crosses the plane at z_mm meets it, on the grid. It depends on the
+/// coordinates of the edge's ends alone, so all triangles at an edge find the same point.
+[[nodiscard]] Point2 cut_point(const Mesh& mesh, EdgeKey edge, double z_mm);
+
+/// Cuts all triangles by all planes. The order of cuts within a layer depends on the method.
+/// Throws Error{kBadInput} naming the model where there are more cuts than memory should be spent
+/// on.
+[[nodiscard]] CutTable cut_triangles(const Mesh& mesh, const Planes& planes, SliceMethod method,
+                                     const std::string& model_name,
+                                     const ParallelFor& parallel_for);
+
+}  // namespace routebench::slicing

@@ -1,0 +1,186 @@
+#include "routebench/geometry/slice.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <span>
+#include <utility>
+
+#include "chain_segments.hpp"
+#include "close_gaps.hpp"
+#include "cut_triangles.hpp"
+#include "routebench/geometry/error.hpp"
+#include "routebench/geometry/region.hpp"
+
+namespace routebench {
+namespace {
+
+using slicing::Closing;
+using slicing::Contours;
+using slicing::CutTable;
+using slicing::Planes;
+
+constexpr int kMaxLayers = 100'000;
+/// Beyond this a coordinate has no place on the grid that clippers work on.
+constexpr double kMaxCoordinateMm = 1e6;
+
+[[noreturn]] void refuse(const std::string& model_name, const std::string& what) {
+  throw Error(ErrorKind::kBadInput, model_name + ": " + what);
+}
+
+std::string text(double value) {
+  std::array<char, 32> buffer;
+  const int length = std::snprintf(buffer.data(), buffer.size(), "%.6g", value);
+  return {buffer.data(), static_cast<std::size_t>(length)};
+}
+
+std::string name_of(const Layer& layer) {
+  return "layer " + std::to_string(layer.index) + " (z = " + text(layer.z_mm) + " mm)";
+}
+
+/// "1 gap", "2 gaps".
+std::string counted(std::size_t count, const std::string& noun) {
+  return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
+}
+
+void check_mesh(const Mesh& mesh, const std::string& model_name) {
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+    const Point3& p = mesh.vertices[v];
+    // Written so that NaN fails too.
+    if (!(std::abs(p.x) <= kMaxCoordinateMm && std::abs(p.y) <= kMaxCoordinateMm &&
+          std::abs(p.z) <= kMaxCoordinateMm))
+      refuse(model_name, "vertex " + std::to_string(v) + " at x = " + text(p.x) +
+                             ", y = " + text(p.y) + ", z = " + text(p.z) +
+                             " mm: coordinates must be numbers of at most 1000 m");
+  }
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (const std::uint32_t corner : mesh.triangles[t])
+      if (corner >= mesh.vertices.size())
+        refuse(model_name, "triangle " + std::to_string(t) + " names vertex " +
+                               std::to_string(corner) + ", but there are only " +
+                               std::to_string(mesh.vertices.size()));
+}
+
+void check_options(const SliceOptions& options) {
+  if (!(options.layer_height_mm > 0 && std::isfinite(options.layer_height_mm)))
+    throw Error(ErrorKind::kBadInput, "layer_height_mm = " + text(options.layer_height_mm) +
+                                          ": must be a number above 0, for example 0.2");
+  if (!(options.crack_mm >= 0 && std::isfinite(options.crack_mm)))
+    throw Error(ErrorKind::kBadInput, "crack_mm = " + text(options.crack_mm) +
+                                          ": must be a number of at least 0, for example 0.1");
+}
+
+/// The planes below the highest vertex that belongs to a triangle.
+Planes planes_through(const Mesh& mesh, double layer_height_mm, const std::string& model_name) {
+  double top_mm = 0;
+  for (const auto& triangle : mesh.triangles)
+    for (const std::uint32_t corner : triangle) top_mm = std::max(top_mm, mesh.vertices[corner].z);
+  if (top_mm / layer_height_mm > kMaxLayers)
+    refuse(model_name, "layers of " + text(layer_height_mm) + " mm would be more than " +
+                           std::to_string(kMaxLayers) + ": take at least " +
+                           text(top_mm / kMaxLayers) + " mm");
+  // As in Planes::level the comparison with the planes themselves decides.
+  Planes planes{layer_height_mm, static_cast<int>(top_mm / layer_height_mm + 0.5)};
+  while (planes.count > 0 && planes.z_mm(planes.count - 1) >= top_mm) --planes.count;
+  while (planes.z_mm(planes.count) < top_mm) ++planes.count;
+  if (planes.count == 0)
+    refuse(model_name, "nothing to print: the model is " + text(top_mm) +
+                           " mm high, which is not more than half a layer of " +
+                           text(layer_height_mm) +
+                           " mm; scale it (?size=...) or take thinner layers");
+  return planes;
+}
+
+[[noreturn]] void refuse_open(const Layer& layer, const Closing& closing, double crack_mm,
+                              const std::string& model_name) {
+  refuse(model_name, name_of(layer) + ": a contour is open by " + text(closing.widest_open_mm) +
+                         " mm at x = " + text(closing.widest_open_at.x) + ", y = " +
+                         text(closing.widest_open_at.y) + "; only cracks up to " + text(crack_mm) +
+                         " mm are closed unasked: mend the model, or slice it with --repair");
+}
+
+SliceReport summarise(const std::vector<Layer>& layers, const std::vector<Closing>& closings,
+                      double crack_mm) {
+  SliceReport report;
+  std::size_t dropped = 0, turned = 0;
+  double longest_dropped_mm = 0;
+  const Layer* first_repaired = nullptr;
+  for (std::size_t i = 0; i < layers.size(); ++i) {
+    const Closing& closing = closings[i];
+    report.cracks_closed += closing.cracks;
+    report.widest_crack_mm = std::max(report.widest_crack_mm, closing.widest_crack_mm);
+    report.gaps_repaired += closing.gaps;
+    report.widest_gap_mm = std::max(report.widest_gap_mm, closing.widest_gap_mm);
+    dropped += closing.dropped;
+    longest_dropped_mm = std::max(longest_dropped_mm, closing.longest_dropped_mm);
+    turned += closing.turned;
+    if (!layers[i].repaired) continue;
+    ++report.repaired_layers;
+    if (first_repaired == nullptr) first_repaired = &layers[i];
+  }
+  if (report.cracks_closed > 0)
+    report.warnings.push_back("closed " + counted(report.cracks_closed, "crack") +
+                              " in contours, the widest " + text(report.widest_crack_mm) + " mm");
+  if (report.repaired_layers > 0)
+    report.warnings.push_back("repaired " + counted(report.repaired_layers, "layer") +
+                              ", the first is " + name_of(*first_repaired));
+  if (report.gaps_repaired > 0)
+    report.warnings.push_back("closed " + counted(report.gaps_repaired, "gap") + " wider than " +
+                              text(crack_mm) + " mm in contours, the widest " +
+                              text(report.widest_gap_mm) + " mm");
+  if (dropped > 0)
+    report.warnings.push_back("left out " + counted(dropped, "open line") +
+                              " of surfaces without thickness, the longest " +
+                              text(longest_dropped_mm) + " mm");
+  if (turned > 0)
+    report.warnings.push_back("joined " + counted(turned, "line") +
+                              " against their direction: facets disagree on what is outside");
+  return report;
+}
+
+}  // namespace
+
+SliceMethod slice_method(std::string_view name) {
+  if (name == "bucket") return SliceMethod::kBucket;
+  if (name == "sweep") return SliceMethod::kSweep;
+  if (name == "naive") return SliceMethod::kNaive;
+  throw Error(ErrorKind::kBadUsage,
+              "unknown slicing method '" + std::string(name) + "': choose bucket, sweep or naive");
+}
+
+Slices slice_mesh(const Mesh& mesh, const SliceOptions& options, const std::string& model_name,
+                  const ParallelFor& parallel_for) {
+  check_options(options);
+  check_mesh(mesh, model_name);
+  const Planes planes = planes_through(mesh, options.layer_height_mm, model_name);
+  const CutTable table = cut_triangles(mesh, planes, options.method, model_name, parallel_for);
+
+  Slices slices;
+  slices.layers.resize(static_cast<std::size_t>(planes.count));
+  std::vector<Closing> closings(slices.layers.size());
+  parallel_for(slices.layers.size(), [&](std::size_t i) {
+    Layer& layer = slices.layers[i];
+    layer.index = static_cast<int>(i);
+    layer.z_mm = planes.z_mm(layer.index);
+    layer.height_mm = options.layer_height_mm;
+    Contours contours = slicing::chain_cuts(table.layer(i), mesh, layer.z_mm);
+    if (!contours.open.empty())
+      closings[i] = slicing::close_gaps(contours.open, options.crack_mm, contours.rings);
+    layer.repaired = closings[i].widest_open_mm > 0;
+    if (layer.repaired && !options.repair) return;  // refused below, lowest layer first
+    layer.polygons = polygons_from_rings(std::move(contours.rings), FillRule::kNonZero);
+  });
+
+  for (std::size_t i = 0; i < slices.layers.size(); ++i)
+    if (slices.layers[i].repaired && !options.repair)
+      refuse_open(slices.layers[i], closings[i], options.crack_mm, model_name);
+  if (std::all_of(slices.layers.begin(), slices.layers.end(),
+                  [](const Layer& layer) { return layer.polygons.empty(); }))
+    refuse(model_name,
+           "nothing to print: no layer has any area, the model is a surface without volume");
+  slices.report = summarise(slices.layers, closings, options.crack_mm);
+  return slices;
+}
+
+}  // namespace routebench

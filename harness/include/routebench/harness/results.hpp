@@ -1,0 +1,191 @@
+#pragma once
+/// The results database: one SQLite file an experiment, written cell by cell.
+///
+/// Tables and columns are described in results/README.md. A cell is found again by its key, so that
+/// an experiment that was stopped goes on where it was; nothing that was written is changed, except
+/// that timing samples are added to a cell and that a repetition can take a cell's outcome away.
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "routebench/harness/judge.hpp"
+#include "routebench/harness/metrics.hpp"
+#include "routebench/harness/provenance.hpp"
+
+namespace routebench {
+
+inline constexpr int kResultsSchemaVersion = 1;
+
+/// One execution of an experiment.
+struct RunRecord {
+  std::string experiment;
+  std::uint64_t seed = 1;
+  std::string config_text;
+  std::string config_resolved_json;
+  std::string command_line;
+  Provenance provenance;
+  std::string plugins_json;
+};
+
+struct ModelRecord {
+  std::string spec;
+  std::string mesh_hash;  ///< empty if the model is a file of layers
+  std::string layers_hash;
+  std::size_t triangles = 0;
+  std::size_t layers = 0;
+  std::string report_json;
+  std::string warnings_json;
+};
+
+struct ContenderRecord {
+  std::string name;
+  std::string base_name;
+  std::string variant_json;
+  std::string variant_hash;
+};
+
+struct SettingRecord {
+  std::string label;
+  std::string task_json;
+  std::string printer_json;
+  std::string setting_hash;
+};
+
+/// The route of a layer, for pictures.
+struct RouteRecord {
+  std::size_t layer_index = 0;
+  std::string strokes_json;
+};
+
+/// Time inside plan().
+struct PlanTime {
+  std::int64_t wall_ns = 0;
+  std::int64_t cpu_ns = 0;
+};
+
+/// One timed execution of a cell's planning.
+struct TimingSample {
+  int repetition = 0;
+  PlanTime cell;                 ///< sum over the layers
+  std::vector<PlanTime> layers;  ///< lowest first
+};
+
+/// What came of a cell.
+struct CellRecord {
+  std::string cell_key;
+  std::int64_t model_id = 0;
+  std::int64_t contender_id = 0;
+  std::int64_t setting_id = 0;
+  std::uint64_t seed = 1;
+  Outcome outcome = Outcome::kValid;
+  std::string reason;
+  std::size_t layers = 0;
+  std::optional<std::string> route_hash;
+  std::string started_utc;
+  double cell_wall_s = 0;
+  Scores totals;  ///< empty or one a metric; plan times are taken from timing samples alone
+  std::vector<LayerScore> layer_scores;
+  std::vector<RouteRecord> routes;
+  std::optional<TimingSample> timing;  ///< if the execution can be trusted for time
+};
+
+/// What is known of a cell that was executed before.
+struct KnownCell {
+  std::int64_t cell_id = 0;
+  Outcome outcome = Outcome::kValid;
+  std::optional<std::string> route_hash;
+  std::vector<int> repetitions;  ///< numbers of its timing samples, ascending
+  double cell_wall_s = 0;
+  double timeout_s = 0;  ///< the limits under which it was executed
+  int memory_mb = 0;
+  std::optional<std::string> git_commit;  ///< of the program that executed it
+};
+
+/// The name of an outcome back to the outcome. Throws Error{kBadInput} for another name.
+[[nodiscard]] Outcome outcome_named(const std::string& name);
+
+/// The only writer of an experiment's results, for as long as it lives.
+class ResultsWriter {
+ public:
+  enum class Start {
+    kResume,  ///< go on with what is there
+    kFresh,   ///< start anew; the old file is replaced when the new one holds its first cell
+  };
+
+  /// Takes  a folder, which is made if need be; the file in it is results.sqlite.
+  /// Throws Error{kBadInput} if another run is writing there, if the file belongs to another
+  ///        experiment or was written by another version (kFresh accepts another version), or if it
+  ///        cannot be written.
+  ResultsWriter(const std::filesystem::path& folder, const std::string& experiment, Start start);
+  ~ResultsWriter();
+  ResultsWriter(const ResultsWriter&) = delete;
+  ResultsWriter& operator=(const ResultsWriter&) = delete;
+
+  [[nodiscard]] const std::filesystem::path& file() const noexcept;
+
+  /// Adds the run to which all cells that are added from now on belong.
+  void begin_run(const RunRecord& run);
+  /// Notes the end of the run and puts a fresh file in its place.
+  void finish_run();
+
+  /// Finds or adds, and returns the id.
+  [[nodiscard]] std::int64_t model_id(const ModelRecord& model);
+  [[nodiscard]] std::int64_t contender_id(const ContenderRecord& contender);
+  [[nodiscard]] std::int64_t setting_id(const SettingRecord& setting);
+
+  /// Stores the shape of a layer unless it is there.
+  void add_layer_shape(std::int64_t model_id, const Layer& layer);
+
+  [[nodiscard]] std::optional<KnownCell> find_cell(const std::string& cell_key);
+  /// Says that a cell of an earlier run belongs to this run's experiment, too.
+  void reuse_cell(std::int64_t cell_id);
+
+  /// Adds a cell with all that belongs to it in one transaction, and returns its id. A cell with
+  /// the same key that ran into a limit (timed_out, out_of_memory) is replaced.
+  std::int64_t add_cell(const CellRecord& cell);
+
+  /// Adds a timing sample and brings the cell's plan times, medians of its samples, up to date. The
+  /// layers' times are those of repetition 0.
+  void add_timing(std::int64_t cell_id, const TimingSample& sample);
+
+  /// A repetition went wrong: the cell is no longer what it was.
+  void change_outcome(std::int64_t cell_id, Outcome outcome, const std::string& reason);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// One cell as tables show it.
+struct StoredCell {
+  std::string model;
+  std::string contender;
+  std::string setting;
+  std::uint64_t seed = 1;
+  Outcome outcome = Outcome::kValid;
+  std::string reason;
+  std::size_t layers = 0;
+  Scores totals;  ///< one a metric
+};
+
+/// The file of results that a user means: the file itself or the folder that holds it.
+/// Throws Error{kBadInput} if there is none.
+[[nodiscard]] std::filesystem::path results_file(const std::filesystem::path& folder_or_file);
+
+/// The cells of the last run's config: those that it executed and those that it found done. In the
+/// order in which the config names models, contenders and settings.
+/// Throws Error{kBadInput} for a file that is no results database of this version.
+[[nodiscard]] std::vector<StoredCell> current_cells(const std::filesystem::path& file);
+
+/// Writes the database as CSV files (RFC 4180, UTF-8, a header line each), every file under a
+/// temporary name first. Returns the files. See results/README.md for their columns.
+/// Throws Error{kBadInput} if the folder cannot be written.
+std::vector<std::filesystem::path> export_csv(const std::filesystem::path& file,
+                                              const std::filesystem::path& folder);
+
+}  // namespace routebench

@@ -1,0 +1,67 @@
+#include <array>
+#include <system_error>
+
+#include "results_schema.hpp"
+#include "routebench/geometry/error.hpp"
+#include "routebench/harness/results.hpp"
+#include "sqlite.hpp"
+
+namespace routebench {
+
+namespace fs = std::filesystem;
+
+Outcome outcome_named(const std::string& name) {
+  for (const Outcome outcome : {Outcome::kValid, Outcome::kOffTask, Outcome::kFailed,
+                                Outcome::kCrashed, Outcome::kTimedOut, Outcome::kOutOfMemory})
+    if (to_string(outcome) == name) return outcome;
+  throw Error(ErrorKind::kBadInput, "a results database has the unknown outcome '" + name + "'");
+}
+
+fs::path results_file(const fs::path& folder_or_file) {
+  std::error_code error;
+  const fs::file_status status = fs::status(folder_or_file, error);
+  if (!fs::exists(status))
+    throw Error(ErrorKind::kBadInput, folder_or_file.string() +
+                                          ": no such file or folder; give a folder that routebench "
+                                          "run has made, or the database in it");
+  if (!fs::is_directory(status)) return folder_or_file;
+  const fs::path file = folder_or_file / kResultsFileName;
+  if (!fs::exists(file, error))
+    throw Error(ErrorKind::kBadInput, folder_or_file.string() + ": holds no " + kResultsFileName +
+                                          "; give a folder that routebench run has made");
+  return file;
+}
+
+std::vector<StoredCell> current_cells(const fs::path& file) {
+  Database database(file, OpenMode::kReadOnly);
+  require_our_schema(database);
+  std::vector<StoredCell> cells;
+  Statement select(
+      database,
+      "SELECT cell_id, spec, contender.name, label, seed, outcome, reason, current_cell.layers"
+      " FROM current_cell JOIN model USING(model_id) JOIN contender USING(contender_id)"
+      " JOIN setting USING(setting_id)"
+      " ORDER BY setting_id, model_id, seed, contender_id");
+  Statement scores(
+      database,
+      "SELECT position, value FROM cell_score JOIN metric ON metric = name WHERE cell_id = ?");
+  while (select.next()) {
+    StoredCell cell{select.text(1),
+                    select.text(2),
+                    select.text(3),
+                    static_cast<std::uint64_t>(select.integer(4)),
+                    outcome_named(select.text(5)),
+                    select.text(6),
+                    static_cast<std::size_t>(select.integer(7)),
+                    Scores(metric_table().size())};
+    scores.bind(select.integer(0));
+    while (scores.next())
+      if (!scores.is_null(1))
+        cell.totals.at(static_cast<std::size_t>(scores.integer(0))) = scores.real(1);
+    scores.reset();
+    cells.push_back(std::move(cell));
+  }
+  return cells;
+}
+
+}  // namespace routebench

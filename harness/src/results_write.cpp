@@ -1,0 +1,383 @@
+#include <algorithm>
+#include <array>
+#include <sstream>
+#include <system_error>
+
+#include "results_schema.hpp"
+#include "routebench/geometry/error.hpp"
+#include "routebench/geometry/layer_io.hpp"
+#include "routebench/harness/results.hpp"
+#include "run_lock.hpp"
+#include "sqlite.hpp"
+
+namespace routebench {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path made_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error)
+    throw Error(ErrorKind::kBadInput,
+                folder.string() + ": the folder cannot be made: " + error.message());
+  return folder;
+}
+
+void require_same_experiment(Database& database, const std::string& experiment) {
+  const std::string found = experiment_of(database);
+  if (found.empty())
+    throw Error(ErrorKind::kBadInput, database.file().string() +
+                                          ": is a database, but none of routebench's results; "
+                                          "give another folder with --out");
+  if (found != experiment)
+    throw Error(ErrorKind::kBadInput,
+                database.file().string() + ": holds the results of the experiment " + found +
+                    ", not of " + experiment + "; give another folder with --out");
+}
+
+/// The file that SQLite keeps beside a database while it writes.
+fs::path journal_of(const fs::path& file) { return file.string() + "-journal"; }
+
+void remove_database(const fs::path& file) {
+  fs::remove(journal_of(file));
+  fs::remove(file);
+}
+
+void configure(Database& database) {
+  // A commit is on disk before the next cell begins.
+  database.run("PRAGMA journal_mode = DELETE; PRAGMA synchronous = FULL");
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  if (values.size() % 2 == 1) return *middle;
+  return (*middle + *std::max_element(values.begin(), middle)) / 2;
+}
+
+/// The metrics that come from timing samples.
+constexpr std::array<std::string_view, 2> kTimeMetrics{"plan_wall_ns", "plan_cpu_ns"};
+
+bool is_time_metric(std::string_view name) {
+  return std::find(kTimeMetrics.begin(), kTimeMetrics.end(), name) != kTimeMetrics.end();
+}
+
+std::string wkt_of(const Layer& layer) {
+  std::stringstream text;
+  write_wkt(text, {layer});
+  std::string line;
+  while (std::getline(text, line) && line.starts_with('#')) {
+  }
+  return line;
+}
+
+}  // namespace
+
+struct ResultsWriter::Impl {
+  Impl(const fs::path& folder_in, const std::string& experiment, Start start)
+      : folder(made_folder(folder_in)), lock(folder), file(folder / kResultsFileName) {
+    if (fs::exists(file)) {
+      Database old(file, OpenMode::kExisting);
+      require_same_experiment(old, experiment);
+      if (start == Start::kResume) require_our_schema(old);
+    }
+    const bool resume = start == Start::kResume && fs::exists(file);
+    // A new database is made beside its place and moved there when it holds something, so that a
+    // run that is stopped early leaves neither an empty file nor the loss of an old one.
+    const fs::path beside = file.string() + ".new";
+    remove_database(beside);  // of a run that was killed
+    written = resume ? file : beside;
+    database = std::make_unique<Database>(written, OpenMode::kCreate);
+    configure(*database);
+    if (!resume) create_schema(*database, experiment);
+  }
+
+  ~Impl() {
+    const bool published = written == file;
+    database.reset();
+    std::error_code ignored;
+    if (!published) {
+      fs::remove(journal_of(written), ignored);
+      fs::remove(written, ignored);
+    }
+  }
+
+  /// Moves a new database to its place. SQLite finds the journal of an interrupted write by the
+  /// file's name, so the file is closed while it moves, and the old file's journal goes first.
+  void publish() {
+    if (written == file) return;
+    database.reset();
+    if (fs::exists(file)) {
+      Database(file, OpenMode::kReadOnly);  // undoes an interrupted write
+      fs::remove(journal_of(file));
+    }
+    fs::rename(written, file);
+    written = file;
+    database = std::make_unique<Database>(file, OpenMode::kExisting);
+    configure(*database);
+  }
+
+  Statement sql(std::string_view text) { return Statement(*database, text); }
+
+  void add_scores(std::int64_t cell_id, const Scores& totals);
+  void add_layers(std::int64_t cell_id, const std::vector<LayerScore>& layers);
+  void add_sample(std::int64_t cell_id, const TimingSample& sample);
+  void update_plan_times(std::int64_t cell_id);
+  void drop_cell_at_limit(const std::string& cell_key);
+
+  fs::path folder;
+  RunLock lock;
+  fs::path file;
+  fs::path written;
+  std::unique_ptr<Database> database;
+  std::int64_t run_id = 0;
+};
+
+void ResultsWriter::Impl::add_scores(std::int64_t cell_id, const Scores& totals) {
+  Statement insert = sql("INSERT INTO cell_score VALUES(?, ?, ?)");
+  for (std::size_t i = 0; i < totals.size(); ++i) {
+    const std::string_view name = metric_table()[i].name;
+    if (totals[i] && !is_time_metric(name)) insert.bind(cell_id).bind(name).bind(*totals[i]).run();
+  }
+}
+
+void ResultsWriter::Impl::add_layers(std::int64_t cell_id, const std::vector<LayerScore>& layers) {
+  std::string text = "INSERT INTO layer_score VALUES(?, ?, ?, ?";
+  for (std::size_t i = 0; i < metric_table().size(); ++i) text += ", ?";
+  Statement insert = sql(text + ")");
+  for (const LayerScore& layer : layers) {
+    insert.bind(cell_id)
+        .bind(std::int64_t{layer.layer_index})
+        .bind(layer.z_mm)
+        .bind(std::int64_t{layer.repaired});
+    for (std::size_t i = 0; i < metric_table().size(); ++i)
+      is_time_metric(metric_table()[i].name) ? insert.bind_null() : insert.bind(layer.scores.at(i));
+    insert.run();
+  }
+}
+
+void ResultsWriter::Impl::add_sample(std::int64_t cell_id, const TimingSample& sample) {
+  sql("INSERT INTO timing_sample VALUES(?, ?, ?, ?)")
+      .bind(cell_id)
+      .bind(std::int64_t{sample.repetition})
+      .bind(sample.cell.wall_ns)
+      .bind(sample.cell.cpu_ns)
+      .run();
+  if (sample.repetition == 0) {
+    Statement order = sql("SELECT layer_index FROM layer_score WHERE cell_id = ? ORDER BY 1");
+    order.bind(cell_id);
+    Statement update =
+        sql("UPDATE layer_score SET plan_wall_ns = ?, plan_cpu_ns = ? WHERE cell_id = ? AND "
+            "layer_index = ?");
+    for (const PlanTime& time : sample.layers) {
+      if (!order.next()) break;
+      update.bind(static_cast<double>(time.wall_ns))
+          .bind(static_cast<double>(time.cpu_ns))
+          .bind(cell_id)
+          .bind(order.integer(0))
+          .run();
+    }
+  }
+  update_plan_times(cell_id);
+}
+
+void ResultsWriter::Impl::update_plan_times(std::int64_t cell_id) {
+  for (const std::string_view metric : kTimeMetrics) {
+    std::vector<double> samples;
+    Statement select =
+        sql("SELECT " + std::string(metric) + " FROM timing_sample WHERE cell_id = ?");
+    select.bind(cell_id);
+    while (select.next()) samples.push_back(select.real(0));
+    sql("INSERT OR REPLACE INTO cell_score VALUES(?, ?, ?)")
+        .bind(cell_id)
+        .bind(metric)
+        .bind(median(std::move(samples)))
+        .run();
+  }
+}
+
+void ResultsWriter::Impl::drop_cell_at_limit(const std::string& cell_key) {
+  sql("DELETE FROM cell WHERE cell_key = ? AND outcome IN ('timed_out', 'out_of_memory')")
+      .bind(std::string_view(cell_key))
+      .run();
+}
+
+ResultsWriter::ResultsWriter(const fs::path& folder, const std::string& experiment, Start start)
+    : impl_(std::make_unique<Impl>(folder, experiment, start)) {}
+
+ResultsWriter::~ResultsWriter() = default;
+
+const fs::path& ResultsWriter::file() const noexcept { return impl_->file; }
+
+void ResultsWriter::begin_run(const RunRecord& run) {
+  const Provenance& from = run.provenance;
+  Statement insert = impl_->sql(
+      "INSERT INTO run VALUES(NULL, ?, ?, NULL, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+  insert.bind(std::string_view(run.experiment))
+      .bind(std::string_view(utc_now()))
+      .bind(static_cast<std::int64_t>(run.seed))
+      .bind(std::string_view(run.config_text))
+      .bind(std::string_view(run.config_resolved_json))
+      .bind(std::string_view(run.command_line))
+      .bind(std::string_view(from.routebench_version))
+      .bind(from.git_commit);
+  from.git_dirty ? insert.bind(std::int64_t{*from.git_dirty}) : insert.bind_null();
+  insert.bind(std::string_view(from.compiler))
+      .bind(std::string_view(from.compiler_flags))
+      .bind(std::string_view(from.libraries_json))
+      .bind(std::string_view(from.cpu))
+      .bind(std::int64_t{from.cores})
+      .bind(from.memory_bytes)
+      .bind(std::string_view(from.os))
+      .bind(std::string_view(run.plugins_json))
+      .run();
+  impl_->run_id = impl_->database->last_row();
+}
+
+void ResultsWriter::finish_run() {
+  impl_->sql("UPDATE run SET finished_utc = ? WHERE run_id = ?")
+      .bind(std::string_view(utc_now()))
+      .bind(impl_->run_id)
+      .run();
+  impl_->publish();
+}
+
+std::int64_t ResultsWriter::model_id(const ModelRecord& model) {
+  impl_->sql("INSERT INTO model VALUES(NULL, ?, ?, ?, ?, ?, ?, ?) ON CONFLICT DO NOTHING")
+      .bind(std::string_view(model.spec))
+      .bind(std::string_view(model.mesh_hash))
+      .bind(std::string_view(model.layers_hash))
+      .bind(static_cast<std::int64_t>(model.triangles))
+      .bind(static_cast<std::int64_t>(model.layers))
+      .bind(std::string_view(model.report_json))
+      .bind(std::string_view(model.warnings_json))
+      .run();
+  Statement find =
+      impl_->sql("SELECT model_id FROM model WHERE spec = ? AND mesh_hash = ? AND layers_hash = ?");
+  find.bind(std::string_view(model.spec))
+      .bind(std::string_view(model.mesh_hash))
+      .bind(std::string_view(model.layers_hash));
+  static_cast<void>(find.next());
+  return find.integer(0);
+}
+
+std::int64_t ResultsWriter::contender_id(const ContenderRecord& contender) {
+  impl_->sql("INSERT INTO contender VALUES(NULL, ?, ?, ?, ?) ON CONFLICT DO NOTHING")
+      .bind(std::string_view(contender.name))
+      .bind(std::string_view(contender.base_name))
+      .bind(std::string_view(contender.variant_json))
+      .bind(std::string_view(contender.variant_hash))
+      .run();
+  Statement find =
+      impl_->sql("SELECT contender_id FROM contender WHERE name = ? AND variant_hash = ?");
+  find.bind(std::string_view(contender.name)).bind(std::string_view(contender.variant_hash));
+  static_cast<void>(find.next());
+  return find.integer(0);
+}
+
+std::int64_t ResultsWriter::setting_id(const SettingRecord& setting) {
+  // The label tells what varies in the config, which may have changed since.
+  impl_
+      ->sql(
+          "INSERT INTO setting VALUES(NULL, ?, ?, ?, ?)"
+          " ON CONFLICT(setting_hash) DO UPDATE SET label = excluded.label")
+      .bind(std::string_view(setting.label))
+      .bind(std::string_view(setting.task_json))
+      .bind(std::string_view(setting.printer_json))
+      .bind(std::string_view(setting.setting_hash))
+      .run();
+  Statement find = impl_->sql("SELECT setting_id FROM setting WHERE setting_hash = ?");
+  find.bind(std::string_view(setting.setting_hash));
+  static_cast<void>(find.next());
+  return find.integer(0);
+}
+
+void ResultsWriter::add_layer_shape(std::int64_t model_id, const Layer& layer) {
+  impl_->sql("INSERT INTO layer_shape VALUES(?, ?, ?, ?) ON CONFLICT DO NOTHING")
+      .bind(model_id)
+      .bind(std::int64_t{layer.index})
+      .bind(layer.z_mm)
+      .bind(std::string_view(wkt_of(layer)))
+      .run();
+}
+
+std::optional<KnownCell> ResultsWriter::find_cell(const std::string& cell_key) {
+  Statement find = impl_->sql(
+      "SELECT cell_id, outcome, route_hash, cell_wall_s, git_commit,"
+      " json_extract(config_resolved_json, '$.run.timeout_s'),"
+      " json_extract(config_resolved_json, '$.run.memory_mb')"
+      " FROM cell JOIN run USING(run_id) WHERE cell_key = ?");
+  find.bind(std::string_view(cell_key));
+  if (!find.next()) return std::nullopt;
+  KnownCell cell;
+  cell.cell_id = find.integer(0);
+  cell.outcome = outcome_named(find.text(1));
+  if (!find.is_null(2)) cell.route_hash = find.text(2);
+  cell.cell_wall_s = find.real(3);
+  if (!find.is_null(4)) cell.git_commit = find.text(4);
+  cell.timeout_s = find.real(5);
+  cell.memory_mb = static_cast<int>(find.integer(6));
+  Statement samples =
+      impl_->sql("SELECT repetition FROM timing_sample WHERE cell_id = ? ORDER BY repetition");
+  samples.bind(cell.cell_id);
+  while (samples.next()) cell.repetitions.push_back(static_cast<int>(samples.integer(0)));
+  return cell;
+}
+
+void ResultsWriter::reuse_cell(std::int64_t cell_id) {
+  impl_->sql("INSERT INTO run_cell VALUES(?, ?) ON CONFLICT DO NOTHING")
+      .bind(impl_->run_id)
+      .bind(cell_id)
+      .run();
+}
+
+std::int64_t ResultsWriter::add_cell(const CellRecord& cell) {
+  Transaction transaction(*impl_->database);
+  impl_->drop_cell_at_limit(cell.cell_key);
+  impl_->sql("INSERT INTO cell VALUES(NULL, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
+      .bind(std::string_view(cell.cell_key))
+      .bind(impl_->run_id)
+      .bind(cell.model_id)
+      .bind(cell.contender_id)
+      .bind(cell.setting_id)
+      .bind(static_cast<std::int64_t>(cell.seed))
+      .bind(to_string(cell.outcome))
+      .bind(std::string_view(cell.reason))
+      .bind(static_cast<std::int64_t>(cell.layers))
+      .bind(cell.route_hash)
+      .bind(std::string_view(cell.started_utc))
+      .bind(cell.cell_wall_s)
+      .run();
+  const std::int64_t cell_id = impl_->database->last_row();
+  reuse_cell(cell_id);
+  impl_->add_scores(cell_id, cell.totals);
+  impl_->add_layers(cell_id, cell.layer_scores);
+  for (const RouteRecord& route : cell.routes)
+    impl_->sql("INSERT INTO route VALUES(?, ?, ?)")
+        .bind(cell_id)
+        .bind(static_cast<std::int64_t>(route.layer_index))
+        .bind(std::string_view(route.strokes_json))
+        .run();
+  if (cell.timing) impl_->add_sample(cell_id, *cell.timing);
+  transaction.commit();
+  impl_->publish();
+  return cell_id;
+}
+
+void ResultsWriter::add_timing(std::int64_t cell_id, const TimingSample& sample) {
+  Transaction transaction(*impl_->database);
+  impl_->add_sample(cell_id, sample);
+  transaction.commit();
+}
+
+void ResultsWriter::change_outcome(std::int64_t cell_id, Outcome outcome,
+                                   const std::string& reason) {
+  impl_->sql("UPDATE cell SET outcome = ?, reason = ? WHERE cell_id = ?")
+      .bind(to_string(outcome))
+      .bind(std::string_view(reason))
+      .bind(cell_id)
+      .run();
+}
+
+}  // namespace routebench

@@ -1,0 +1,259 @@
+#include "routebench/geometry/slice.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "meshes.hpp"
+#include "routebench/geometry/error.hpp"
+#include "routebench/geometry/grid.hpp"
+#include "routebench/geometry/region.hpp"
+
+namespace routebench {
+namespace {
+
+using test::box;
+using test::together;
+using test::torus;
+
+std::vector<Layer> layers_of(const Mesh& mesh, double layer_height_mm,
+                             SliceMethod method = SliceMethod::kBucket) {
+  SliceOptions options;
+  options.layer_height_mm = layer_height_mm;
+  options.method = method;
+  return slice_mesh(mesh, options, "test").layers;
+}
+
+/// What slice_mesh says about a mesh that it refuses.
+std::string refusal(const Mesh& mesh, const SliceOptions& options,
+                    ErrorKind kind = ErrorKind::kBadInput) {
+  try {
+    static_cast<void>(slice_mesh(mesh, options, "part.stl"));
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), kind);
+    EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
+    return error.what();
+  }
+  ADD_FAILURE() << "was not refused";
+  return {};
+}
+
+std::size_t holes(const Polygons& polygons) {
+  std::size_t count = 0;
+  for (const Polygon& polygon : polygons) count += polygon.holes.size();
+  return count;
+}
+
+/// Meshes whose vertices, edges and faces meet planes in every way that a slicer gets wrong.
+std::vector<Mesh> nasty_meshes() {
+  const Mesh cube = box({0, 0, 0}, {10, 10, 10});
+  std::vector<Mesh> meshes;
+  meshes.push_back(torus(10, 4, 16, 12));
+  meshes.push_back(torus(10, 4, 16, 12, true));
+  meshes.push_back(together(cube, box({10, 10, 0}, {20, 20, 10})));  // touch along an edge
+  meshes.push_back(together(cube, box({10, 0, 0}, {20, 10, 10})));   // share a wall
+  meshes.push_back(together(cube, box({5, 5, 5}, {15, 15, 15})));    // overlap
+  meshes.push_back(together(cube, box({2, 2, 10}, {8, 8, 15})));     // stand on one another
+  meshes.push_back(together(cube, cube));                            // are the same
+  meshes.push_back(together(cube, test::inside_out(box({2, 2, 2}, {8, 8, 8}))));  // a cavity
+  return meshes;
+}
+
+TEST(SliceMesh, BoxHasItsFootprintInEveryLayer) {
+  const std::vector<Layer> layers = layers_of(box({1, 2, 0}, {11, 22, 2}), 0.2);
+  ASSERT_EQ(layers.size(), 10u);
+  for (std::size_t i = 0; i < layers.size(); ++i) {
+    EXPECT_EQ(layers[i].index, static_cast<int>(i));
+    EXPECT_EQ(layers[i].z_mm, (static_cast<double>(i) + 0.5) * 0.2);
+    EXPECT_EQ(layers[i].height_mm, 0.2);
+    ASSERT_EQ(layers[i].polygons.size(), 1u);
+    EXPECT_TRUE(layers[i].polygons[0].holes.empty());
+    EXPECT_DOUBLE_EQ(area_mm2(layers[i].polygons), 200);
+    EXPECT_FALSE(layers[i].repaired);
+    EXPECT_TRUE(layers[i].solid.empty());
+  }
+}
+
+TEST(SliceMesh, CoordinatesLieOnTheGrid) {
+  for (const Layer& layer : layers_of(torus(10.123, 3.7, 31, 17), 0.3))
+    for (const Polygon& polygon : layer.polygons)
+      for (const Point2 p : polygon.outer) EXPECT_EQ(p, snap(p));
+}
+
+TEST(SliceMesh, LayersAreThePlanesStrictlyBelowTheTop) {
+  for (const double height_mm : {0.1, 0.2, 0.3, 1.0 / 3, 0.7})
+    for (const double top_mm : {0.9, 1.0, 1.5, 2.1, 2.7, 3.0, 10 * height_mm, 7.5 * height_mm}) {
+      const std::vector<Layer> layers = layers_of(box({0, 0, 0}, {1, 1, top_mm}), height_mm);
+      ASSERT_FALSE(layers.empty());
+      EXPECT_LT(layers.back().z_mm, top_mm);
+      EXPECT_GE((static_cast<double>(layers.size()) + 0.5) * height_mm, top_mm);
+      for (const Layer& layer : layers) EXPECT_DOUBLE_EQ(area_mm2(layer.polygons), 1);
+    }
+}
+
+TEST(SliceMesh, PlaneThroughAFlatFaceIsTheLimitFromBelow) {
+  // Planes at 0.25, 0.75, 1.25: the step is exactly on the second, the top on no plane.
+  const Mesh steps = together(box({0, 0, 0}, {20, 20, 0.75}), box({5, 5, 0.75}, {15, 15, 1.5}));
+  const std::vector<Layer> layers = layers_of(steps, 0.5);
+  ASSERT_EQ(layers.size(), 3u);
+  EXPECT_DOUBLE_EQ(area_mm2(layers[0].polygons), 400);
+  EXPECT_DOUBLE_EQ(area_mm2(layers[1].polygons), 400);
+  EXPECT_DOUBLE_EQ(area_mm2(layers[2].polygons), 100);
+}
+
+TEST(SliceMesh, PlanesThroughVerticesAreTheLimitFromBelow) {
+  for (const bool upright : {false, true}) {
+    const Mesh mesh = torus(8, 4, 24, 16, upright);
+    for (std::size_t v = 0; v < mesh.vertices.size(); v += 5) {
+      const double z_mm = mesh.vertices[v].z;
+      if (z_mm < 0.5 || z_mm > 23.5 || (!upright && z_mm > 7.9)) continue;  // no plane at the ends
+      const double height_mm = 2 * z_mm;  // puts the lowest plane through the vertex
+      const std::vector<Layer> layers = layers_of(mesh, height_mm);
+      ASSERT_EQ(layers[0].z_mm, z_mm);
+      EXPECT_NEAR(area_mm2(layers[0].polygons), test::cut_area_mm2(mesh, z_mm), 1e-4);
+      EXPECT_NEAR(area_mm2(layers[0].polygons), test::cut_area_mm2(mesh, z_mm - 1e-8), 1e-4);
+    }
+  }
+}
+
+TEST(SliceMesh, AreaIsThatOfTheTriangleCuts) {
+  for (const Mesh& mesh : {torus(10, 4, 64, 48), torus(10, 4, 64, 48, true)})
+    for (const double height_mm : {0.05, 0.2, 0.5, 1.0})
+      for (const Layer& layer : layers_of(mesh, height_mm)) {
+        const double expected = test::cut_area_mm2(mesh, layer.z_mm);
+        EXPECT_NEAR(area_mm2(layer.polygons), expected, 1e-6 * expected + 1e-4);
+      }
+}
+
+TEST(SliceMesh, SumOfAreasApproachesTheVolume) {
+  const Mesh mesh = torus(10, 4, 64, 48, true);
+  const double volume_mm3 = test::volume_mm3(mesh);
+  double error_before = std::numeric_limits<double>::infinity();
+  for (const double height_mm : {2.0, 0.5, 0.125}) {
+    double sum_mm3 = 0;
+    for (const Layer& layer : layers_of(mesh, height_mm))
+      sum_mm3 += area_mm2(layer.polygons) * layer.height_mm;
+    const double error = std::abs(sum_mm3 / volume_mm3 - 1);
+    EXPECT_LT(error, error_before);
+    error_before = error;
+  }
+  EXPECT_LT(error_before, 1e-3);
+}
+
+TEST(SliceMesh, HolesAndIslandsAreThoseOfTheSolid) {
+  for (const Layer& layer : layers_of(torus(10, 4, 64, 48), 0.2)) {
+    ASSERT_EQ(layer.polygons.size(), 1u);
+    EXPECT_EQ(layer.polygons[0].holes.size(), 1u);
+  }
+  for (const Layer& layer : layers_of(torus(10, 4, 64, 48, true), 0.2)) {
+    const bool beside_the_hole = layer.z_mm > 8 && layer.z_mm < 20;  // and no plane near its ends
+    EXPECT_EQ(holes(layer.polygons), 0u);
+    EXPECT_EQ(layer.polygons.size(), beside_the_hole ? 2u : 1u) << layer.z_mm;
+  }
+}
+
+TEST(SliceMesh, OverlappingShellsAreOneSolid) {
+  const Mesh mesh = together(box({0, 0, 0}, {10, 10, 10}), box({5, 5, 0}, {15, 15, 10}));
+  for (const Layer& layer : layers_of(mesh, 0.5)) {
+    ASSERT_EQ(layer.polygons.size(), 1u);
+    EXPECT_DOUBLE_EQ(area_mm2(layer.polygons), 175);
+  }
+}
+
+TEST(SliceMesh, SharedWallsVanishAndDuplicatesDoNoHarm) {
+  const Mesh cube = box({0, 0, 0}, {10, 10, 10});
+  for (const Layer& layer : layers_of(together(cube, box({10, 0, 0}, {20, 10, 10})), 0.5)) {
+    EXPECT_EQ(layer.polygons.size(), 1u);
+    EXPECT_DOUBLE_EQ(area_mm2(layer.polygons), 200);
+  }
+  for (const Layer& layer : layers_of(together(cube, cube), 0.5)) {
+    EXPECT_EQ(layer.polygons.size(), 1u);
+    EXPECT_DOUBLE_EQ(area_mm2(layer.polygons), 100);
+  }
+}
+
+TEST(SliceMesh, CavitiesAreHollowAndShellsWithinShellsAreSolid) {
+  const Mesh outer = box({0, 0, 0}, {10, 10, 10}), inner = box({2, 2, 2}, {8, 8, 8});
+  const std::vector<Layer> hollow = layers_of(together(outer, test::inside_out(inner)), 1);
+  const std::vector<Layer> nested = layers_of(together(outer, inner), 1);
+  EXPECT_DOUBLE_EQ(area_mm2(hollow[4].polygons), 64);
+  EXPECT_EQ(holes(hollow[4].polygons), 1u);
+  EXPECT_DOUBLE_EQ(area_mm2(nested[4].polygons), 100);
+  EXPECT_EQ(holes(nested[4].polygons), 0u);
+}
+
+TEST(SliceMesh, EveryOrderGivesTheSameLayers) {
+  for (const Mesh& mesh : nasty_meshes())
+    for (const double height_mm : {0.5, 0.8, 1.0, 1.7}) {
+      const std::vector<Layer> expected = layers_of(mesh, height_mm);
+      for (std::uint32_t seed = 1; seed <= 5; ++seed)
+        EXPECT_EQ(layers_of(test::shuffled(mesh, seed), height_mm), expected);
+    }
+}
+
+TEST(SliceMesh, EveryMethodGivesTheSameLayers) {
+  for (const Mesh& mesh : nasty_meshes())
+    for (const double height_mm : {0.1, 0.8, 1.0, 30.0 / 7}) {
+      const std::vector<Layer> expected = layers_of(mesh, height_mm);
+      EXPECT_EQ(layers_of(mesh, height_mm, SliceMethod::kSweep), expected);
+      EXPECT_EQ(layers_of(mesh, height_mm, SliceMethod::kNaive), expected);
+    }
+}
+
+TEST(SliceMesh, TheLoopThatRunsItDoesNotMatter) {
+  const ParallelFor backwards = [](std::size_t count,
+                                   const std::function<void(std::size_t)>& body) {
+    for (std::size_t i = count; i-- > 0;) body(i);
+  };
+  const Mesh mesh = torus(10, 4, 300, 300);  // more than one block of triangles
+  EXPECT_EQ(slice_mesh(mesh, {}, "test", backwards).layers, slice_mesh(mesh, {}, "test").layers);
+}
+
+TEST(SliceMesh, RefusesWhatHasNothingToPrint) {
+  EXPECT_NE(refusal(Mesh{}, {}).find("part.stl: nothing to print"), std::string::npos);
+  EXPECT_NE(refusal(box({0, 0, 0}, {0.02, 0.02, 0.02}), {}).find("0.02 mm high"),
+            std::string::npos);
+  const Mesh sheet{{{0, 0, 0}, {10, 0, 0}, {0, 0, 10}}, {{0, 1, 2}, {0, 2, 1}}};
+  EXPECT_NE(refusal(sheet, {}).find("surface without volume"), std::string::npos);
+}
+
+TEST(SliceMesh, RefusesAbsurdOptions) {
+  const Mesh cube = box({0, 0, 0}, {10, 10, 10});
+  for (const double height_mm :
+       {0.0, -0.2, std::nan(""), std::numeric_limits<double>::infinity()}) {
+    SliceOptions options;
+    options.layer_height_mm = height_mm;
+    EXPECT_NE(refusal(cube, options).find("layer_height_mm"), std::string::npos);
+  }
+  SliceOptions too_thin;
+  too_thin.layer_height_mm = 1e-5;
+  EXPECT_NE(refusal(cube, too_thin).find("at least 0.0001 mm"), std::string::npos);
+  too_thin.layer_height_mm = std::numeric_limits<double>::denorm_min();
+  EXPECT_NE(refusal(cube, too_thin).find("100000"), std::string::npos);
+  SliceOptions no_crack;
+  no_crack.crack_mm = std::nan("");
+  EXPECT_NE(refusal(cube, no_crack).find("crack_mm"), std::string::npos);
+}
+
+TEST(SliceMesh, RefusesMeshesThatAreNone) {
+  Mesh mesh = box({0, 0, 0}, {10, 10, 10});
+  mesh.triangles.push_back({0, 1, 99});
+  EXPECT_NE(refusal(mesh, {}).find("vertex 99"), std::string::npos);
+  mesh.triangles.pop_back();
+  for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity(), 1e30}) {
+    mesh.vertices[3].y = bad;
+    EXPECT_NE(refusal(mesh, {}).find("vertex 3"), std::string::npos);
+  }
+}
+
+TEST(SliceMethod, NamesAreUnderstoodOrRefused) {
+  EXPECT_EQ(slice_method("bucket"), SliceMethod::kBucket);
+  EXPECT_EQ(slice_method("sweep"), SliceMethod::kSweep);
+  EXPECT_EQ(slice_method("naive"), SliceMethod::kNaive);
+  EXPECT_THROW(static_cast<void>(slice_method("fast")), Error);
+}
+
+}  // namespace
+}  // namespace routebench
