@@ -102,14 +102,6 @@ void check_contenders(const ExperimentConfig& config, const Registry& registry) 
   }
 }
 
-std::string variant_json(const ContenderSpec& contender, const Registry& registry) {
-  return variant_of(contender, registry).dump();
-}
-
-std::string task_json(const Task& task) { return json_of(task_values(task)).dump(); }
-
-std::string printer_json(const Printer& printer) { return json_of(printer_values(printer)).dump(); }
-
 std::string resolved_json(const ExperimentConfig& config, const Registry& registry) {
   json object;
   object["name"] = config.name;

@@ -90,12 +90,4 @@ void check_contenders(const ExperimentConfig& config, const Registry& registry);
 /// parameters are those that `registry` resolves. Call check_contenders first.
 [[nodiscard]] std::string resolved_json(const ExperimentConfig& config, const Registry& registry);
 
-/// What a contender is, without its name: slots with every parameter, order. As JSON with sorted
-/// keys, so that equal variants have equal text.
-[[nodiscard]] std::string variant_json(const ContenderSpec& contender, const Registry& registry);
-
-/// Every key of a task or printer with its value, as JSON.
-[[nodiscard]] std::string task_json(const Task& task);
-[[nodiscard]] std::string printer_json(const Printer& printer);
-
 }  // namespace routebench
