@@ -117,13 +117,13 @@ TEST_F(PlanCommand, ChosenLayersAreThoseOfTheWholeModel) {
   const json all = without_times(plan(kModel, {"--json", "-"}).json());
   const json some = without_times(plan(kModel, {"--json", "-", "--layers", "10..12,3"}).json());
   EXPECT_EQ(some["layers"], 4);
-  std::vector<int> indices;
+  std::vector<std::size_t> indices;
   for (const json& layer : some["per_layer"]) {
     indices.push_back(layer["layer"]);
     // Skins were found with all layers there: what is deposited is the same.
     EXPECT_EQ(layer["extrude_mm"], all["per_layer"][indices.back()]["extrude_mm"]);
   }
-  EXPECT_EQ(indices, (std::vector<int>{3, 10, 11, 12}));
+  EXPECT_EQ(indices, (std::vector<std::size_t>{3, 10, 11, 12}));
 }
 
 TEST_F(PlanCommand, DrawsEveryLayer) {
