@@ -1,7 +1,6 @@
 #include "routebench/planning/matching.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <string>
 #include <utility>
 
@@ -10,6 +9,7 @@
 #include "routebench/geometry/error.hpp"
 #include "routebench/geometry/grid.hpp"
 #include "routebench/geometry/vec.hpp"
+#include "routebench/planning/nearest_grid.hpp"
 
 namespace routebench {
 namespace {
@@ -84,16 +84,14 @@ double length_mm(std::span<const Point2> points, const Matching& matching) {
 
 Matching greedy_matching(std::span<const Point2> points) {
   require_even(points);
-  constexpr std::uint32_t kFree = std::numeric_limits<std::uint32_t>::max();
-  Matching mate(points.size(), kFree);
-  PointTree free(points);
+  Matching mate(points.size());
+  NearestGrid free({points.begin(), points.end()});
   for (std::uint32_t i = 0; i < points.size(); ++i) {
-    if (mate[i] != kFree) continue;
-    const std::uint32_t partner = free.nearest_to(i).value();
-    mate[i] = partner;
-    mate[partner] = i;
+    if (!free.has(i)) continue;
     free.remove(i);
-    free.remove(partner);
+    mate[i] = free.nearest(points[i]).value();
+    mate[mate[i]] = i;
+    free.remove(mate[i]);
   }
   return mate;
 }
@@ -106,7 +104,7 @@ Matching minimum_matching(std::span<const Point2> points) {
   for (std::uint32_t i = 0; i < points.size(); ++i) {
     // With the pairs of another perfect matching there always is one, and it is never longer.
     pairs.push_back(weighted(points, i, greedy[i]));
-    for (const std::uint32_t near : tree.nearest_to(i, kNeighbours))
+    for (const std::uint32_t near : tree.nearest(i, kNeighbours))
       pairs.push_back(weighted(points, i, near));
   }
   while (true) {
