@@ -6,7 +6,7 @@
 #include <string>
 
 #include "routebench/geometry/error.hpp"
-#include "routebench/planning/params.hpp"
+#include "routebench/geometry/nearest_name.hpp"
 
 namespace routebench {
 

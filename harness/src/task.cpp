@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "routebench/geometry/error.hpp"
-#include "routebench/planning/params.hpp"
+#include "routebench/geometry/nearest_name.hpp"
 
 namespace routebench {
 
