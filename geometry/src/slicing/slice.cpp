@@ -12,6 +12,7 @@
 #include "slicing/chain_segments.hpp"
 #include "slicing/close_gaps.hpp"
 #include "slicing/cut_triangles.hpp"
+#include "slicing/slivers.hpp"
 
 namespace routebench {
 namespace {
@@ -170,6 +171,10 @@ Slices slice_mesh(const Mesh& mesh, const SliceOptions& options, const std::stri
     layer.repaired = closings[i].widest_open_mm > 0;
     if (layer.repaired && !options.repair) return;  // refused below, lowest layer first
     layer.polygons = polygons_from_rings(std::move(contours.rings), FillRule::kNonZero);
+    // Where facets gape they also overlap by as much.
+    if (closings[i].cracks > 0)
+      layer.polygons =
+          slicing::without_slivers(std::move(layer.polygons), closings[i].widest_crack_mm);
   });
 
   for (std::size_t i = 0; i < slices.layers.size(); ++i)

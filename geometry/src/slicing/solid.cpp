@@ -8,6 +8,7 @@
 #include "routebench/geometry/error.hpp"
 #include "routebench/geometry/grid.hpp"
 #include "routebench/geometry/region.hpp"
+#include "slicing/slivers.hpp"
 
 namespace routebench {
 namespace {
@@ -51,16 +52,6 @@ class CommonParts {
   std::vector<Polygons> to_block_end_;
 };
 
-bool is_sliver(const Ring& ring) {
-  return 2 * std::abs(signed_area_mm2(ring)) < kSliverMm * perimeter_mm(ring);
-}
-
-Polygons without_slivers(Polygons polygons) {
-  std::erase_if(polygons, [](const Polygon& polygon) { return is_sliver(polygon.outer); });
-  for (Polygon& polygon : polygons) std::erase_if(polygon.holes, is_sliver);
-  return polygons;
-}
-
 }  // namespace
 
 void find_solid(std::vector<Layer>& layers, int skin_layers, const ParallelFor& parallel_for) {
@@ -78,7 +69,8 @@ void find_solid(std::vector<Layer>& layers, int skin_layers, const ParallelFor& 
     Layer& layer = layers[i];
     const bool at_an_end = i < reach || i + reach >= count;
     layer.solid = at_an_end ? layer.polygons
-                            : without_slivers(rest(layer.polygons, common.of_window(i - reach)));
+                            : slicing::without_slivers(
+                                  rest(layer.polygons, common.of_window(i - reach)), kSliverMm);
   });
 }
 
