@@ -88,7 +88,7 @@ void EdgeGrid::visit_cells(Point2 a, Point2 b, double margin_mm, Visit&& visit) 
       const double share_in = std::clamp((bottom - a.y) / (b.y - a.y), 0.0, 1.0);
       const double share_out = std::clamp((top - a.y) / (b.y - a.y), 0.0, 1.0);
       const auto [x0, x1] =
-          std::minmax(a.x + share_in * (b.x - a.x), a.x + share_out * (b.x - a.x));
+          std::minmax({a.x + share_in * (b.x - a.x), a.x + share_out * (b.x - a.x)});
       low_x = x0;
       high_x = x1;
     }

@@ -7,11 +7,11 @@
 #include <span>
 #include <utility>
 
-#include "chain_segments.hpp"
-#include "close_gaps.hpp"
-#include "cut_triangles.hpp"
 #include "routebench/geometry/error.hpp"
 #include "routebench/geometry/region.hpp"
+#include "slicing/chain_segments.hpp"
+#include "slicing/close_gaps.hpp"
+#include "slicing/cut_triangles.hpp"
 
 namespace routebench {
 namespace {

@@ -1,4 +1,4 @@
-#include "chain_segments.hpp"
+#include "slicing/chain_segments.hpp"
 
 #include <algorithm>
 #include <bit>

@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "cut_triangles.hpp"
 #include "routebench/geometry/types.hpp"
+#include "slicing/cut_triangles.hpp"
 
 namespace routebench::slicing {
 

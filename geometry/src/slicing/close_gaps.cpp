@@ -1,4 +1,4 @@
-#include "close_gaps.hpp"
+#include "slicing/close_gaps.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "cut_triangles.hpp"
+#include "slicing/cut_triangles.hpp"
 
 #include <algorithm>
 #include <array>

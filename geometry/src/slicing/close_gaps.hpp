@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "chain_segments.hpp"
 #include "routebench/geometry/types.hpp"
+#include "slicing/chain_segments.hpp"
 
 namespace routebench::slicing {
 

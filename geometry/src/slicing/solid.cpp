@@ -1,0 +1,85 @@
+#include "routebench/geometry/solid.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <string>
+#include <utility>
+
+#include "routebench/geometry/error.hpp"
+#include "routebench/geometry/grid.hpp"
+#include "routebench/geometry/region.hpp"
+
+namespace routebench {
+namespace {
+
+/// A difference of areas that share a boundary leaves slivers along it where corners were rounded
+/// to the grid. Everything narrower than this on average is taken for one.
+constexpr double kSliverMm = 8 / kGridUnitsPerMm;
+
+// Neighbouring layers are often equal: then no clipper is needed.
+Polygons common_part(const Polygons& a, const Polygons& b) { return a == b ? a : intersect(a, b); }
+Polygons rest(const Polygons& a, const Polygons& b) { return a == b ? Polygons{} : subtract(a, b); }
+
+/// The common part of any `window` consecutive layers from two intersections, whatever the window's
+/// width: layers are cut into blocks as long as the window, and every layer knows what is common to
+/// it and all before it in its block, and to it and all after it. A window is the end of one block
+/// and the beginning of the next.
+/// Source: M. van Herk, 1992 (for the minimum of numbers).
+class CommonParts {
+ public:
+  CommonParts(const std::vector<Layer>& layers, std::size_t window, const ParallelFor& parallel_for)
+      : window_(window), from_block_begin_(layers.size()), to_block_end_(layers.size()) {
+    parallel_for((layers.size() + window - 1) / window, [&](std::size_t block) {
+      const std::size_t begin = block * window, end = std::min(layers.size(), begin + window);
+      from_block_begin_[begin] = layers[begin].polygons;
+      for (std::size_t i = begin + 1; i < end; ++i)
+        from_block_begin_[i] = common_part(from_block_begin_[i - 1], layers[i].polygons);
+      to_block_end_[end - 1] = layers[end - 1].polygons;
+      for (std::size_t i = end - 1; i-- > begin;)
+        to_block_end_[i] = common_part(layers[i].polygons, to_block_end_[i + 1]);
+    });
+  }
+
+  [[nodiscard]] Polygons of_window(std::size_t begin) const {
+    if (begin % window_ == 0) return to_block_end_[begin];
+    return common_part(to_block_end_[begin], from_block_begin_[begin + window_ - 1]);
+  }
+
+ private:
+  std::size_t window_;
+  std::vector<Polygons> from_block_begin_;
+  std::vector<Polygons> to_block_end_;
+};
+
+bool is_sliver(const Ring& ring) {
+  return 2 * std::abs(signed_area_mm2(ring)) < kSliverMm * perimeter_mm(ring);
+}
+
+Polygons without_slivers(Polygons polygons) {
+  std::erase_if(polygons, [](const Polygon& polygon) { return is_sliver(polygon.outer); });
+  for (Polygon& polygon : polygons) std::erase_if(polygon.holes, is_sliver);
+  return polygons;
+}
+
+}  // namespace
+
+void find_solid(std::vector<Layer>& layers, int skin_layers, const ParallelFor& parallel_for) {
+  if (skin_layers < 0)
+    throw Error(ErrorKind::kBadUsage,
+                "skin_layers = " + std::to_string(skin_layers) + ": must be 0 or more");
+  const std::size_t count = layers.size();
+  const std::size_t reach = std::min(static_cast<std::size_t>(skin_layers), count);
+  if (reach == 0 || 2 * reach >= count) {
+    for (Layer& layer : layers) layer.solid = reach == 0 ? Polygons{} : layer.polygons;
+    return;
+  }
+  const CommonParts common(layers, 2 * reach + 1, parallel_for);
+  parallel_for(count, [&](std::size_t i) {
+    Layer& layer = layers[i];
+    const bool at_an_end = i < reach || i + reach >= count;
+    layer.solid = at_an_end ? layer.polygons
+                            : without_slivers(rest(layer.polygons, common.of_window(i - reach)));
+  });
+}
+
+}  // namespace routebench
