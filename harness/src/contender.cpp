@@ -20,6 +20,7 @@ constexpr std::array<std::string_view, 3> kKindNames = {"wall", "dense", "sparse
 
 /// No printer reaches further, and arithmetic on the grid stays exact well beyond.
 constexpr double kFarthestMm = 1e6;
+constexpr double kWidestMm = 1e3;
 
 std::unique_ptr<const Planner> make_planner(const SlotSpec& slot, PlannerRole role,
                                             const std::string& contender, const Registry& registry,
@@ -66,9 +67,9 @@ std::string fault_of(const Route& route) {
     if (stroke.points.size() < 2)
       return which + "has " + std::to_string(stroke.points.size()) +
              " points; it needs two or more";
-    if (!(stroke.width_mm > 0) || !std::isfinite(stroke.width_mm))
+    if (!(stroke.width_mm > 0 && stroke.width_mm <= kWidestMm))
       return which + "has the width " + std::to_string(stroke.width_mm) +
-             " mm; it must be positive";
+             " mm; it must be positive and at most a metre";
     for (std::size_t k = 0; k < stroke.points.size(); ++k) {
       const Point2 p = stroke.points[k];
       if (!is_place(p))

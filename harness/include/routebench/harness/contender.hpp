@@ -67,7 +67,8 @@ class Contender {
   ///        run: each layer's planners get one that is mixed from it and the layer's index.
   /// Throws Error{kStopped} when asked to stop; Error{kBadInput} naming planner and layer if a
   ///        planner throws anything else, or returns a stroke of fewer than two points, a
-  ///        coordinate that is not finite or a kilometre away, or a width that is not positive.
+  ///        coordinate that is not finite or a kilometre away, or a width that is
+  ///        not positive or more than a metre.
   ///        std::bad_alloc passes as it is.
   /// Cost   beside the planners' own near-linear in the layer's vertices.
   [[nodiscard]] PlannedLayer plan(const Layer& layer, const Demand& demand, const Task& task,
