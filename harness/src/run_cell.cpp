@@ -192,8 +192,8 @@ std::string execute_cell(const CellWork& work, ChildProgress& progress) {
   result.totals.at(metric_index("peak_rss_bytes")) = peak_bytes;
   result.layers = std::move(judged.layers);
   for (const std::size_t i : work.kept_layers)
-    result.routes.push_back({static_cast<std::size_t>(sliced.layers[i].index),
-                             text_of(strokes_json(planned[i]), true)});
+    result.routes.push_back(
+        {static_cast<std::size_t>(sliced.layers[i].index), text_of(json_of(planned[i]), true)});
   return encode(result);
 }
 

@@ -75,8 +75,11 @@ MemoryUse own_memory() {
 
 std::uint64_t bytes_of_mb(int mb) { return static_cast<std::uint64_t>(mb) << 20; }
 
+/// Sets the soft limit: what we lower ourselves we can lift again.
 void limit(__rlimit_resource resource, std::uint64_t value) {
-  const rlimit both{value, value};
+  rlimit both{};
+  getrlimit(resource, &both);
+  both.rlim_cur = std::min<rlim_t>(value, both.rlim_max);
   setrlimit(resource, &both);
 }
 
@@ -116,27 +119,35 @@ void write_all(int descriptor, std::string_view bytes) {
   }
 }
 
-std::string message(ChildEnd::How how, std::string_view text) {
-  ByteWriter out;
-  out.add(kResultMark).add(std::uint64_t{how == ChildEnd::How::kResult});
-  out.add(std::uint64_t{how == ChildEnd::How::kOutOfMemory}).add(text).add(kResultMark);
-  return out.bytes();
+/// In the child: tells its parent, without another copy of the text.
+void tell(ChildEnd::How how, std::string_view text) {
+  ByteWriter head;
+  head.add(kResultMark).add(static_cast<std::uint64_t>(how)).add(std::uint64_t{text.size()});
+  ByteWriter tail;
+  tail.add(kResultMark);
+  for (const std::string_view part :
+       {std::string_view(head.bytes()), text, std::string_view(tail.bytes())})
+    write_all(kResultDescriptor, part);
 }
 
 /// In the child: does the work and tells of it. Never returns.
 [[noreturn]] void work_and_exit(const ChildPool::Work& work, ChildProgress& progress) {
-  std::string told;
+  // What is told is our business, not a part of what the work may take.
+  const auto lift_limit = [] { limit(RLIMIT_AS, RLIM_INFINITY); };
   try {
-    told = message(ChildEnd::How::kResult, work(progress));
+    const std::string result = work(progress);
+    lift_limit();
+    tell(ChildEnd::How::kResult, result);
   } catch (const std::bad_alloc&) {
-    limit(RLIMIT_AS, RLIM_INFINITY);
-    told = message(ChildEnd::How::kOutOfMemory, "");
+    lift_limit();
+    tell(ChildEnd::How::kOutOfMemory, "");
   } catch (const std::exception& error) {
-    told = message(ChildEnd::How::kException, error.what());
+    lift_limit();
+    tell(ChildEnd::How::kException, error.what());
   } catch (...) {
-    told = message(ChildEnd::How::kException, "something was thrown that is no std::exception");
+    lift_limit();
+    tell(ChildEnd::How::kException, "something was thrown that is no std::exception");
   }
-  write_all(kResultDescriptor, told);
   _exit(0);
 }
 
@@ -145,15 +156,17 @@ std::optional<ChildEnd> told_by(std::string_view bytes) {
   try {
     ByteReader in(bytes);
     if (in.text() != kResultMark) return std::nullopt;
-    const bool result = in.whole() != 0;
-    const bool memory = in.whole() != 0;
+    const std::uint64_t how = in.whole();
     ChildEnd end;
     end.text = in.text();
     if (in.text() != kResultMark) return std::nullopt;
-    end.how = result   ? ChildEnd::How::kResult
-              : memory ? ChildEnd::How::kOutOfMemory
-                       : ChildEnd::How::kException;
-    return end;
+    for (const ChildEnd::How told :
+         {ChildEnd::How::kResult, ChildEnd::How::kException, ChildEnd::How::kOutOfMemory})
+      if (how == static_cast<std::uint64_t>(told)) {
+        end.how = told;
+        return end;
+      }
+    return std::nullopt;
   } catch (const Error&) {
     return std::nullopt;
   }

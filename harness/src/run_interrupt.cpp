@@ -1,6 +1,7 @@
 #include "run_interrupt.hpp"
 
 #include <ctime>
+#include <initializer_list>
 
 namespace routebench {
 

@@ -39,8 +39,8 @@ ModelRecord record_of(const std::string& spec, const SlicedModel& sliced) {
   record.layers_hash = hash_of_layers(sliced.layers);
   record.triangles = sliced.mesh ? sliced.mesh->triangles : 0;
   record.layers = sliced.layers.size();
-  const Json report = {{"mesh", sliced.mesh ? mesh_json(*sliced.mesh) : Json(nullptr)},
-                       {"slicing", slice_report_json(sliced.report)}};
+  const Json report = {{"mesh", sliced.mesh ? json_of(*sliced.mesh) : Json(nullptr)},
+                       {"slicing", json_of(sliced.report)}};
   record.report_json = text_of(report, true);
   record.warnings_json = text_of(Json(sliced.warnings), true);
   return record;
@@ -63,7 +63,7 @@ PreparedModel prepared_model(const ConfiguredModel& model, const Task& task,
 }
 
 ContenderRecord record_of(const ConfiguredContender& configured, const Contender& contender) {
-  Json variant = contender_json(contender);
+  Json variant = json_of(contender);
   variant.erase("name");
   ContenderRecord record{configured.spec.name, configured.base_name, text_of(variant, true), ""};
   record.variant_hash = sha256(record.variant_json);
@@ -83,8 +83,8 @@ std::string plugin_hashes(const ContenderSpec& spec, const PlannerSet& planners)
 }
 
 SettingRecord record_of(const Setting& setting) {
-  SettingRecord record{setting.label, text_of(task_json(setting.task), true),
-                       text_of(printer_json(setting.printer), true), ""};
+  SettingRecord record{setting.label, text_of(json_of(setting.task), true),
+                       text_of(json_of(setting.printer), true), ""};
   ByteWriter both;
   both.add(std::string_view(record.task_json)).add(std::string_view(record.printer_json));
   record.setting_hash = sha256(both.bytes());

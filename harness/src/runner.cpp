@@ -185,7 +185,7 @@ void Execution::begin() {
   record.command_line = options_.command_line;
   record.provenance = collect_provenance();
   Json plugins = Json::array();
-  for (const PluginRecord& plugin : planners_.plugins) plugins.push_back(plugin_json(plugin));
+  for (const PluginRecord& plugin : planners_.plugins) plugins.push_back(json_of(plugin));
   record.plugins_json = text_of(plugins, true);
 
   results_.together([&] {
@@ -320,14 +320,16 @@ RunSummary Execution::run() {
   summary_.file = results_.file();
   const KnownCells known = results_.known_cells();
   states_ = states_of(plan_, known, config_.run);
-  for (const CellState& state : states_) summary_.found += state.cell_id != 0 ? 1 : 0;
+  summary_.found = static_cast<std::size_t>(std::count_if(
+      states_.begin(), states_.end(), [](const CellState& state) { return state.cell_id != 0; }));
   tell_what_was_found(known);
   if (is_done(known)) return summary_;
   begin();
   execute_cells();
   take_times();
   summary_.interrupted = interrupt_.interrupted();
-  for (const CellState& state : states_) summary_.left += is_to_execute(state) ? 1 : 0;
+  summary_.left =
+      static_cast<std::size_t>(std::count_if(states_.begin(), states_.end(), is_to_execute));
   if (summary_.interrupted) return summary_;
   results_.finish_run();
   return summary_;
