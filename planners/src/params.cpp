@@ -4,7 +4,6 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "routebench/geometry/error.hpp"
@@ -56,26 +55,6 @@ std::optional<double> number_in(const ParamValue& value) {
 }
 
 bool holds(Range range, double value) { return value >= range.lowest && value <= range.highest; }
-
-/// Edits between two words: letters put in, left out, changed, or neighbours exchanged.
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> before_last;
-  std::vector<std::size_t> last(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) last[j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::vector<std::size_t> row(b.size() + 1);
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t change = last[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
-      row[j] = std::min({last[j] + 1, row[j - 1] + 1, change});
-      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
-        row[j] = std::min(row[j], before_last[j - 2] + 1);
-      }
-    }
-    before_last = std::exchange(last, std::move(row));
-  }
-  return last[b.size()];
-}
 
 }  // namespace
 
@@ -171,26 +150,6 @@ void ParamBinder::finish() const {
     refuse(owner_, "unknown parameter '" + name + "'" + did_you_mean(name, known) +
                        (known.empty() ? "; it has none" : "; known are " + joined(known)));
   }
-}
-
-std::optional<std::string> nearest_name(std::string_view word,
-                                        const std::vector<std::string>& candidates) {
-  std::optional<std::string> best;
-  std::size_t best_distance = std::numeric_limits<std::size_t>::max();
-  for (const std::string& candidate : candidates) {
-    std::size_t distance = edit_distance(word, candidate);
-    const std::size_t allowed =
-        std::max<std::size_t>(1, std::max(word.size(), candidate.size()) / 3);
-    // A beginning of at least three letters is meant even if much is left out.
-    const bool begins = word.size() >= 3 && candidate.starts_with(word);
-    if (distance > allowed && !begins) continue;
-    if (begins) distance = std::min(distance, allowed);
-    if (distance < best_distance || (distance == best_distance && candidate < *best)) {
-      best = candidate;
-      best_distance = distance;
-    }
-  }
-  return best;
 }
 
 }  // namespace routebench

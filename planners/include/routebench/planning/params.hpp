@@ -13,6 +13,8 @@
 #include <variant>
 #include <vector>
 
+#include "routebench/geometry/nearest_name.hpp"
+
 namespace routebench {
 
 using ParamValue = std::variant<bool, std::int64_t, double, std::string>;
@@ -98,9 +100,5 @@ class ParamBinder {
   std::vector<ParamSchema> schema_;
   ParamSet resolved_;
 };
-
-/// The candidate most like a word, if one is near enough to be meant (for "did you mean").
-[[nodiscard]] std::optional<std::string> nearest_name(std::string_view word,
-                                                      const std::vector<std::string>& candidates);
 
 }  // namespace routebench

@@ -1,0 +1,207 @@
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "model/facet_sink.hpp"
+#include "model/stl_reader.hpp"
+
+namespace routebench {
+namespace {
+
+/// Whether a word is a keyword, in any case. `keyword` is lower case.
+bool is_keyword(std::string_view word, std::string_view keyword) noexcept {
+  return word.size() == keyword.size() &&
+         std::equal(word.begin(), word.end(), keyword.begin(),
+                    [](char have, char want) { return (have | 0x20) == want; });
+}
+
+bool is_line_end(char c) noexcept { return c == '\n' || c == '\r'; }
+/// Blanks, tabs, line ends and other control bytes; bytes of UTF-8 are not.
+bool is_blank(char c) noexcept { return c >= 0 && c <= ' '; }
+
+/// Reads facets from text. Only the words facet, vertex, endloop, endfacet, solid and endsolid
+/// matter; whatever else stands between them is passed over, as writers put their own words there.
+class AsciiStl {
+ public:
+  AsciiStl(std::span<const char> bytes, const ReadContext& context)
+      : begin_(bytes.data()),
+        at_(begin_),
+        end_(begin_ + bytes.size()),
+        context_(context),
+        // No facet is written in less than "facet vertex 0 0 0 ..." takes.
+        sink_(context, std::min<std::size_t>(bytes.size() / 200 + 1, kMostTriangles)) {
+    if (std::string_view(begin_, bytes.size()).starts_with("\xEF\xBB\xBF")) at_ += 3;
+  }
+
+  RawMesh read() {
+    while (next_word()) {
+      if (is_keyword(word_, "facet")) {
+        if (begins_facet() && !read_facet()) break;
+      } else if (is_keyword(word_, "solid")) {
+        solid_open_ = true;
+        pass_name();
+      } else if (is_keyword(word_, "endsolid")) {
+        solid_open_ = false;
+        pass_name();
+      }
+    }
+    if (sink_.seen() == 0) refuse("an ASCII STL file without any whole facet");
+    if (solid_open_ && cut_.empty()) cut_ = "no endsolid: the file may be cut short";
+    RawMesh raw = sink_.finish();
+    if (!cut_.empty()) raw.warnings.push_back(cut_);
+    return raw;
+  }
+
+ private:
+  [[noreturn]] void refuse(const std::string& complaint) const {
+    refuse_model(context_.name, complaint);
+  }
+
+  /// "line 12", counting \n, \r\n and \r.
+  [[nodiscard]] std::string line(const char* place) const {
+    std::size_t lines = 1;
+    for (const char* p = begin_; p < place; ++p) {
+      const bool pair = *p == '\r' && p + 1 < end_ && p[1] == '\n';
+      if (is_line_end(*p) && !pair) ++lines;
+    }
+    return "line " + std::to_string(lines);
+  }
+
+  [[nodiscard]] std::string this_facet(const char* place) const {
+    return "facet " + std::to_string(sink_.seen() + 1) + " (" + line(place) + ")";
+  }
+
+  /// The next word into word_; false at the end.
+  bool next_word() noexcept {
+    while (at_ < end_ && is_blank(*at_)) ++at_;
+    const char* const start = at_;
+    while (at_ < end_ && !is_blank(*at_)) ++at_;
+    word_ = {start, static_cast<std::size_t>(at_ - start)};
+    return !word_.empty();
+  }
+
+  /// Looks one word ahead.
+  [[nodiscard]] std::string_view peek_word() noexcept {
+    const char* const here = at_;
+    const std::string_view current = word_;
+    next_word();
+    at_ = here;
+    return std::exchange(word_, current);
+  }
+
+  /// Whether the word facet, just read, is the keyword and not a part of some remark.
+  [[nodiscard]] bool begins_facet() noexcept {
+    const std::string_view next = peek_word();
+    const bool cut_off = next.data() + next.size() == end_;
+    return is_keyword(next, "normal") || is_keyword(next, "outer") || cut_off;
+  }
+
+  /// Passes over a solid's name: to the end of the line, or to a facet if all is on one line. A
+  /// name may contain keywords, but hardly a normal with its number.
+  void pass_name() noexcept {
+    const char* const line_end = std::find_if(at_, end_, is_line_end);
+    while (next_word() && word_.data() < line_end) {
+      if (!is_keyword(word_, "facet") || !is_keyword(peek_word(), "normal")) continue;
+      const char* const facet = word_.data();
+      next_word();
+      const std::string_view number = peek_word();
+      const bool real = !number.empty() && number.data() < line_end &&
+                        std::string_view("+-.0123456789").find(number[0]) != std::string_view::npos;
+      if (!real) continue;
+      at_ = facet;
+      return;
+    }
+    at_ = line_end;
+  }
+
+  /// Reads from the normal to endfacet. False if the file ends before.
+  bool read_facet() {
+    const char* const start = word_.data();
+    Facet facet{};
+    std::size_t corners = 0;
+    while (next_word()) {
+      if (is_keyword(word_, "vertex")) {
+        if (corners == 3) refuse(this_facet(start) + " has more than three corners");
+        if (!read_corner(facet[corners])) break;
+        ++corners;
+      } else if (is_keyword(word_, "endfacet")) {
+        if (corners < 3) {
+          refuse(this_facet(start) + " has " + counted(corners, "corner") + ", but must have 3");
+        }
+        sink_.add(facet, [&] { return line(start); });
+        return true;
+      } else if (is_keyword(word_, "endsolid") || (is_keyword(word_, "facet") && begins_facet())) {
+        refuse(this_facet(start) + " has no endfacet before " + line(word_.data()));
+      }
+    }
+    cut_ = "cut short: the file ends inside " + this_facet(start);
+    if (!context_.repair) refuse(cut_ + "; with --repair the whole facets are read");
+    cut_ += "; " + counted(sink_.seen(), "whole facet") + " read";
+    return false;
+  }
+
+  /// Reads three numbers. False if the file ends before they are complete.
+  bool read_corner(std::array<float, 3>& corner) {
+    for (float& coordinate : corner) {
+      if (!next_word()) return false;
+      coordinate = number();
+    }
+    if (at_ == end_) return false;  // the last number may have lost digits
+    const std::string_view next = peek_word();
+    const bool fourth = !next.empty() && (next[0] == '-' || (next[0] >= '0' && next[0] <= '9'));
+    if (fourth) {
+      refuse(this_facet(next.data()) + ": a corner with more than three numbers ('" +
+             std::string(next.substr(0, 40)) + "')");
+    }
+    return true;
+  }
+
+  /// The number that word_ is.
+  [[nodiscard]] float number() const {
+    const char* first = word_.data();
+    const char* const last = first + word_.size();
+    if (*first == '+' && word_.size() > 1) ++first;
+    float value = 0;
+    const auto [stop, error] = std::from_chars(first, last, value);
+    if (error == std::errc() && stop == last) return value;
+    if (error == std::errc::result_out_of_range && stop == last) return out_of_range(first, last);
+    const std::string shown = "'" + std::string(word_.substr(0, 40)) + "'";
+    if (word_.find(',') != std::string_view::npos) {
+      refuse(this_facet(first) + ": " + shown +
+             " is written with a comma; a number must have a decimal point");
+    }
+    refuse(this_facet(first) + ": " + shown + " is not a number");
+  }
+
+  /// Numbers too small for single precision are 0; too large ones are infinite and refused as such.
+  [[nodiscard]] static float out_of_range(const char* first, const char* last) {
+    double value = 0;
+    const bool known = std::from_chars(first, last, value).ec == std::errc();
+    const std::string_view text(first, static_cast<std::size_t>(last - first));
+    const bool tiny = known ? std::abs(value) < 1
+                            : text.find("e-") != std::string_view::npos ||
+                                  text.find("E-") != std::string_view::npos;
+    return tiny ? 0.0F : std::numeric_limits<float>::infinity();
+  }
+
+  const char* begin_;
+  const char* at_;
+  const char* end_;
+  std::string_view word_;
+  const ReadContext& context_;
+  FacetSink sink_;
+  bool solid_open_ = false;
+  std::string cut_;  ///< a warning about how the file ends
+};
+
+}  // namespace
+
+RawMesh read_ascii_stl(std::span<const char> bytes, const ReadContext& context) {
+  return AsciiStl(bytes, context).read();
+}
+
+}  // namespace routebench

@@ -1,0 +1,50 @@
+#pragma once
+/// Exact welding: equal corners become one vertex.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "routebench/geometry/types.hpp"
+
+namespace routebench {
+
+/// Gives equal points equal numbers, in order of first appearance.
+///
+/// An open-addressing table that grows with the number of distinct points, so that no count of a
+/// file is trusted. Points come in batches: all their slots are fetched from memory at once.
+class VertexWelder {
+ public:
+  static constexpr std::size_t kBatch = 48;
+
+  /// `expected` distinct points: a guess that only saves time.
+  explicit VertexWelder(std::size_t expected);
+
+  /// Replaces negative zeros in `points` by zeros and writes each point's number to `indices`.
+  /// Takes at most kBatch finite points; the distinct ones in all must stay below 2^32 - 1.
+  void weld(std::span<Point3> points, std::uint32_t* indices);
+
+  /// The distinct points; the welder is empty afterwards.
+  [[nodiscard]] std::vector<Point3> take_vertices();
+
+ private:
+  /// A part of the hash, which also gives the place, and the vertex number + 1; 0 is a free slot.
+  struct Slot {
+    std::uint32_t tag = 0;
+    std::uint32_t vertex = 0;
+  };
+
+  [[nodiscard]] std::uint32_t find_or_add(const Point3& point, std::uint32_t tag);
+  void grow();
+
+  std::vector<Slot> slots_;
+  std::size_t mask_;
+  std::vector<Point3> vertices_;
+};
+
+/// Welds the vertices of an indexed mesh, in place, and drops those that no triangle uses.
+void weld_mesh(Mesh& mesh);
+
+}  // namespace routebench

@@ -1,0 +1,47 @@
+#include "shapes/shapes.hpp"
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "model/raw_mesh.hpp"
+#include "routebench/geometry/nearest_name.hpp"
+
+namespace routebench {
+namespace {
+
+struct Maker {
+  const char* name;
+  Mesh (*make)(ShapeQuery&);
+};
+
+constexpr std::array kMakers{
+    Maker{"box", make_box},
+    Maker{"cylinder", make_cylinder},
+    Maker{"sphere", make_sphere},
+    Maker{"torus", make_torus},
+};
+
+}  // namespace
+
+Mesh make_shape(const std::string& spec, const std::string& name,
+                const std::map<std::string, std::string>& parameters) {
+  const auto* const maker =
+      std::find_if(kMakers.begin(), kMakers.end(), [&](const Maker& m) { return name == m.name; });
+  if (maker == kMakers.end()) {
+    std::vector<std::string> names;
+    std::string list;
+    for (const Maker& m : kMakers) {
+      names.emplace_back(m.name);
+      list += (list.empty() ? "" : ", ") + names.back();
+    }
+    const auto near = nearest_name(name, names);
+    refuse_model(spec, "unknown shape '" + name + "'" +
+                           (near ? ", did you mean '" + *near + "'?" : "") + " (known: " + list +
+                           ")");
+  }
+  ShapeQuery query(spec, parameters);
+  return maker->make(query);
+}
+
+}  // namespace routebench

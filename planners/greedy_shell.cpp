@@ -1,0 +1,367 @@
+/// Walls by always going to the nearest segment that is not yet printed.
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "routebench/geometry/region.hpp"
+#include "routebench/geometry/vec.hpp"
+#include "routebench/planning/frame.hpp"
+#include "routebench/planning/nearest_grid.hpp"
+#include "routebench/planning/plugin.hpp"
+#include "routebench/planning/walls.hpp"
+
+namespace {
+
+using namespace routebench;
+
+enum class SearchKind { kGrid, kNaive };
+enum class Chain { kGreedy, kLinear };
+enum class Seam { kNearest, kFixedPoint, kMinX };
+enum class Order { kInsideOut, kOutsideIn, kAny };
+enum class Thin { kDrop, kDouble };
+
+struct ShellParams {
+  SearchKind search = SearchKind::kGrid;
+  Chain chain = Chain::kGreedy;
+  Seam seam = Seam::kNearest;
+  double seam_x_mm = 0;
+  double seam_y_mm = 0;
+  Order order = Order::kInsideOut;
+  Thin thin = Thin::kDouble;
+  bool small_twice = false;
+
+  void bind(ParamBinder& bind) {
+    bind("search", search, {{"grid", SearchKind::kGrid}, {"naive", SearchKind::kNaive}},
+         "how the nearest segment is found: naive looks at every one each time; same route");
+    bind("chain", chain, {{"greedy", Chain::kGreedy}, {"linear", Chain::kLinear}},
+         "greedy goes to the nearest segment; linear takes walls by smallest x, without a search");
+    bind(
+        "seam", seam,
+        {{"nearest", Seam::kNearest}, {"fixed_point", Seam::kFixedPoint}, {"min_x", Seam::kMinX}},
+        "where a wall begins: at its vertex nearest to the nozzle, nearest to a fixed point, or of "
+        "smallest x");
+    bind("seam_x_mm", seam_x_mm, {-10000, 10000}, "mm", "of the fixed point, from the origin");
+    bind("seam_y_mm", seam_y_mm, {-10000, 10000}, "mm", "of the fixed point, from the origin");
+    bind("order", order,
+         {{"inside_out", Order::kInsideOut},
+          {"outside_in", Order::kOutsideIn},
+          {"any", Order::kAny}},
+         "of an island's walls; any takes what is nearest, of any island");
+    bind("thin", thin, {{"drop", Thin::kDrop}, {"double", Thin::kDouble}},
+         "where the two sides of a wall come nearer than half a spacing: no wall, or there and "
+         "back");
+    bind("small_twice", small_twice,
+         "lay an island's innermost wall twice round if no further one would fit");
+  }
+};
+
+/// Closed walls that may be laid in any order, as a pool of segments: segment i runs from point i
+/// to the next point of its ring.
+class Pool {
+ public:
+  void add(const Ring& ring, bool twice_round) {
+    ring_begin_.push_back(size());
+    twice_round_.push_back(twice_round);
+    points_.insert(points_.end(), ring.begin(), ring.end());
+    ring_of_.resize(points_.size(), static_cast<std::uint32_t>(rings() - 1));
+  }
+
+  void add(const Pool& other) {
+    for (std::size_t ring = 0; ring < other.rings(); ++ring) {
+      const auto begin = other.points_.begin();
+      add(Ring(begin + other.ring_begin(ring), begin + other.ring_end(ring)),
+          other.twice_round_[ring]);
+    }
+  }
+
+  [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(points_.size()); }
+  [[nodiscard]] std::size_t rings() const { return ring_begin_.size(); }
+  [[nodiscard]] const std::vector<Point2>& points() const { return points_; }
+  [[nodiscard]] Point2 start(std::uint32_t segment) const { return points_[segment]; }
+  [[nodiscard]] std::uint32_t ring_begin(std::size_t ring) const { return ring_begin_[ring]; }
+  [[nodiscard]] std::uint32_t ring_end(std::size_t ring) const {
+    return ring + 1 < rings() ? ring_begin_[ring + 1] : size();
+  }
+  /// Whether the ring that a segment belongs to is laid twice.
+  [[nodiscard]] bool twice_round(std::uint32_t segment) const {
+    return twice_round_[ring_of_[segment]];
+  }
+  [[nodiscard]] std::uint32_t next(std::uint32_t segment) const {
+    const std::size_t ring = ring_of_[segment];
+    return segment + 1 < ring_end(ring) ? segment + 1 : ring_begin(ring);
+  }
+
+  /// The segment of a ring whose start comes first by `less`; of equals the first.
+  template <typename Less>
+  [[nodiscard]] std::uint32_t first_of_ring(std::size_t ring, Less less) const {
+    std::uint32_t best = ring_begin(ring);
+    for (std::uint32_t i = best + 1; i < ring_end(ring); ++i)
+      if (less(points_[i], points_[best])) best = i;
+    return best;
+  }
+
+ private:
+  std::vector<Point2> points_;
+  std::vector<std::uint32_t> ring_of_;
+  std::vector<std::uint32_t> ring_begin_;
+  std::vector<bool> twice_round_;
+};
+
+bool less_by_x(Point2 a, Point2 b) { return a.x != b.x ? a.x < b.x : a.y < b.y; }
+
+struct NearerTo {
+  Point2 place;
+  bool operator()(Point2 a, Point2 b) const {
+    return squared_distance(a, place) < squared_distance(b, place);
+  }
+};
+
+/// Chooses where a wall may be begun.
+class SeamRule {
+ public:
+  explicit SeamRule(const ShellParams& params)
+      : seam_(params.seam), place_{params.seam_x_mm, params.seam_y_mm} {}
+
+  [[nodiscard]] bool anywhere() const { return seam_ == Seam::kNearest; }
+
+  /// The segment with which a ring begins, for a nozzle at `from`.
+  [[nodiscard]] std::uint32_t begin_of(const Pool& pool, std::size_t ring, Point2 from) const {
+    if (seam_ == Seam::kMinX) return pool.first_of_ring(ring, less_by_x);
+    return pool.first_of_ring(ring, NearerTo{seam_ == Seam::kNearest ? from : place_});
+  }
+
+  /// Every segment with which a ring of the pool may begin.
+  [[nodiscard]] std::vector<bool> entries(const Pool& pool) const {
+    std::vector<bool> may_begin(pool.size(), anywhere());
+    if (anywhere()) return may_begin;
+    for (std::size_t ring = 0; ring < pool.rings(); ++ring)
+      may_begin[begin_of(pool, ring, place_)] = true;
+    return may_begin;
+  }
+
+ private:
+  Seam seam_;
+  Point2 place_;
+};
+
+// The three searches answer the same question: which segment comes next for a nozzle at `from`, if
+// `follower` (nothing at the end of a ring) begins just there? It is the nearest of all, so it
+// always wins.
+
+/// As published: looks at every segment that is left, each time.
+class NaiveSearch {
+ public:
+  NaiveSearch(const Pool& pool, const SeamRule& seam)
+      : pool_(pool), may_begin_(seam.entries(pool)) {}
+
+  std::optional<std::uint32_t> next(Point2 from, std::optional<std::uint32_t> follower) const {
+    std::optional<std::uint32_t> best = follower;
+    double best_squared = 0;
+    for (std::uint32_t i = 0; i < pool_.size(); ++i) {
+      if (!may_begin_[i]) continue;
+      const double squared = squared_distance(pool_.start(i), from);
+      if (best && squared >= best_squared) continue;
+      best = i;
+      best_squared = squared;
+    }
+    return best;
+  }
+  void remove(std::uint32_t segment) { may_begin_[segment] = false; }
+
+ private:
+  const Pool& pool_;
+  std::vector<bool> may_begin_;
+};
+
+class GridSearch {
+ public:
+  GridSearch(const Pool& pool, const SeamRule& seam) : grid_(pool.points()) {
+    const std::vector<bool> may_begin = seam.entries(pool);
+    for (std::uint32_t i = 0; i < pool.size(); ++i)
+      if (!may_begin[i]) grid_.remove(i);
+  }
+
+  std::optional<std::uint32_t> next(Point2 from, std::optional<std::uint32_t> follower) const {
+    return follower ? follower : grid_.nearest(from);
+  }
+  void remove(std::uint32_t segment) { grid_.remove(segment); }
+
+ private:
+  NearestGrid grid_;
+};
+
+/// No search at all: rings by their smallest x.
+class LinearOrder {
+ public:
+  LinearOrder(const Pool& pool, const SeamRule& seam) : pool_(pool), seam_(seam) {
+    for (std::uint32_t ring = 0; ring < pool.rings(); ++ring)
+      leftmost_.emplace_back(pool.start(pool.first_of_ring(ring, less_by_x)), ring);
+    std::stable_sort(leftmost_.begin(), leftmost_.end(),
+                     [](const auto& a, const auto& b) { return less_by_x(a.first, b.first); });
+  }
+
+  std::optional<std::uint32_t> next(Point2 from, std::optional<std::uint32_t> follower) {
+    if (follower) return follower;
+    if (done_ == leftmost_.size()) return std::nullopt;
+    return seam_.begin_of(pool_, leftmost_[done_++].second, from);
+  }
+  void remove(std::uint32_t) {}
+
+ private:
+  const Pool& pool_;
+  const SeamRule& seam_;
+  std::vector<std::pair<Point2, std::uint32_t>> leftmost_;
+  std::size_t done_ = 0;
+};
+
+void go_round_again(Stroke& stroke) {
+  const std::size_t once = stroke.points.size();
+  stroke.points.reserve(2 * once - 1);
+  for (std::size_t i = 1; i < once; ++i) stroke.points.push_back(stroke.points[i]);
+}
+
+/// Lays every segment of the pool; those that join make a stroke.
+template <typename Search>
+void walk(const Pool& pool, Search search, const PlanContext& context, Point2& nozzle,
+          Route& route) {
+  std::vector<bool> laid(pool.size(), false);
+  std::optional<std::uint32_t> follower;
+  while (const auto segment = search.next(nozzle, follower)) {
+    stop_if_asked(context);
+    if (segment != follower)
+      route.strokes.push_back({{pool.start(*segment)}, context.line_width_mm});
+    laid[*segment] = true;
+    search.remove(*segment);
+    const std::uint32_t next = pool.next(*segment);
+    nozzle = pool.start(next);
+    route.strokes.back().points.push_back(nozzle);
+    follower = laid[next] ? std::nullopt : std::optional(next);
+    if (!follower && pool.twice_round(next)) go_round_again(route.strokes.back());
+  }
+}
+
+/// Pools in the order in which they are laid, none of them empty.
+using Island = std::vector<Pool>;
+
+/// Always the island whose first pool has the nearest segment.
+class NearestIsland {
+ public:
+  explicit NearestIsland(const std::vector<Island>& islands) : islands_(islands) {
+    std::vector<Point2> points;
+    for (std::size_t i = 0; i < islands.size(); ++i) {
+      const std::vector<Point2>& starts = islands[i].front().points();
+      first_.push_back(static_cast<std::uint32_t>(points.size()));
+      points.insert(points.end(), starts.begin(), starts.end());
+      owner_.resize(points.size(), i);
+    }
+    grid_.emplace(std::move(points));
+  }
+
+  std::optional<std::size_t> next(Point2 nozzle) {
+    const auto nearest = grid_->nearest(nozzle);
+    if (!nearest) return std::nullopt;
+    const std::size_t island = owner_[*nearest];
+    const std::uint32_t count = islands_[island].front().size();
+    for (std::uint32_t i = 0; i < count; ++i) grid_->remove(first_[island] + i);
+    return island;
+  }
+
+ private:
+  const std::vector<Island>& islands_;
+  std::vector<std::uint32_t> first_;  // of an island's points in the grid
+  std::vector<std::size_t> owner_;    // island of a point in the grid
+  std::optional<NearestGrid> grid_;
+};
+
+Point2 leftmost(const Island& island) {
+  const std::vector<Point2>& points = island.front().points();
+  return *std::min_element(points.begin(), points.end(), less_by_x);
+}
+
+class GreedyShell final : public Planner {
+ public:
+  using Params = ShellParams;
+
+  static PlannerInfo info() {
+    return {"greedy_shell", PlannerRole::kShell,
+            "walls, always going to the nearest segment that is not yet printed",
+            "K. De Keyser, 2016"};
+  }
+
+  explicit GreedyShell(const Params& params) : params_(params), seam_(params) {}
+
+  [[nodiscard]] Route plan(const Layer& layer, const PlanContext& context) const override {
+    const Frame frame(layer, context);
+    std::vector<Island> islands = islands_of(frame.polygons(), context);
+    Route route;
+    Point2 nozzle = frame.start();
+    const auto lay_all = [&](const Island& island) {
+      for (const Pool& pool : island) lay(pool, context, nozzle, route);
+    };
+    if (params_.chain == Chain::kLinear) {
+      std::stable_sort(islands.begin(), islands.end(), [](const Island& a, const Island& b) {
+        return less_by_x(leftmost(a), leftmost(b));
+      });
+      for (const Island& island : islands) lay_all(island);
+    } else {
+      NearestIsland order(islands);
+      while (const auto island = order.next(nozzle)) lay_all(islands[*island]);
+    }
+    return frame.from_frame(std::move(route));
+  }
+
+ private:
+  [[nodiscard]] std::vector<Island> islands_of(const Polygons& polygons,
+                                               const PlanContext& context) const {
+    std::vector<Island> islands;
+    for (const Polygon& polygon : polygons) {
+      Island island = walls_of(polygon, context);
+      if (!island.empty()) islands.push_back(std::move(island));
+    }
+    if (params_.order != Order::kAny || islands.empty()) return islands;
+    Pool all;
+    for (const Island& island : islands)
+      for (const Pool& pool : island) all.add(pool);
+    return {{std::move(all)}};
+  }
+
+  [[nodiscard]] Island walls_of(const Polygon& polygon, const PlanContext& context) const {
+    const std::vector<Polygons> regions = wall_regions(polygon, context);
+    Island island;
+    for (const Polygons& region : regions) {
+      const bool innermost = &region == &regions.back();
+      const bool twice =
+          params_.small_twice && innermost && offset(region, -context.spacing_mm).empty();
+      Pool pool;
+      for (const Ring& ring : rings_of(wide_enough(region, context))) pool.add(ring, twice);
+      if (pool.size() > 0) island.push_back(std::move(pool));
+    }
+    if (params_.order == Order::kInsideOut) std::reverse(island.begin(), island.end());
+    return island;
+  }
+
+  [[nodiscard]] Polygons wide_enough(const Polygons& region, const PlanContext& context) const {
+    return params_.thin == Thin::kDouble ? region
+                                         : without_thin_parts(region, context.spacing_mm / 2);
+  }
+
+  void lay(const Pool& pool, const PlanContext& context, Point2& nozzle, Route& route) const {
+    if (params_.chain == Chain::kLinear)
+      walk(pool, LinearOrder(pool, seam_), context, nozzle, route);
+    else if (params_.search == SearchKind::kNaive)
+      walk(pool, NaiveSearch(pool, seam_), context, nozzle, route);
+    else
+      walk(pool, GridSearch(pool, seam_), context, nozzle, route);
+  }
+
+  ShellParams params_;
+  SeamRule seam_;
+};
+
+}  // namespace
+
+ROUTEBENCH_REGISTER(greedy_shell) { registry.add<GreedyShell>(); }

@@ -1,0 +1,223 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "nasty_layers.hpp"
+#include "random_polygons.hpp"
+#include "routebench/geometry/region.hpp"
+#include "routebench/geometry/vec.hpp"
+#include "routebench/planning/plugin.hpp"
+#include "routebench/planning/walls.hpp"
+
+namespace routebench {
+namespace {
+
+constexpr double kWidth = 0.5;
+constexpr double kSpacing = 0.4375;  // on the grid, so that corners can be computed by hand
+
+PlanContext context_for(int perimeters) {
+  PlanContext context;
+  context.line_width_mm = kWidth;
+  context.spacing_mm = kSpacing;
+  context.perimeters = perimeters;
+  return context;
+}
+
+Layer layer_of(Polygons polygons) {
+  Layer layer;
+  layer.polygons = std::move(polygons);
+  return layer;
+}
+
+Route plan(const Layer& layer, const PlanContext& context, const ParamSet& params = {}) {
+  Registry registry;
+  register_builtin_planners(registry);
+  return registry.at("greedy_shell").make(params)->plan(layer, context);
+}
+
+ParamValue word(const char* text) { return std::string(text); }
+
+double length_mm(const Route& route) {
+  double sum = 0;
+  for (const Stroke& stroke : route.strokes)
+    for (std::size_t i = 1; i < stroke.points.size(); ++i)
+      sum += distance(stroke.points[i - 1], stroke.points[i]);
+  return sum;
+}
+
+Layer square() { return layer_of({{test::rectangle(0, 0, 10, 10), {}}}); }
+
+/// Layers on which two ways of planning are compared.
+std::vector<Layer> trial_layers() {
+  std::vector<Layer> layers;
+  for (const test::NastyLayer& nasty : test::nasty_layers())
+    if (nasty.name != "thousand_islands") layers.push_back(nasty.layer);
+  for (std::uint64_t seed = 1; seed <= 10; ++seed)
+    layers.push_back(layer_of(test::random_polygons(seed)));
+  return layers;
+}
+
+TEST(GreedyShell, WallsOfASquareAreWhereTheyMustBe) {
+  PlanContext context = context_for(2);
+  context.start = {10, 0};
+  const Route route = plan(square(), context, {{"order", word("outside_in")}});
+  ASSERT_EQ(route.strokes.size(), 2U);
+  const std::vector<Point2> outer{
+      {9.75, 0.25}, {9.75, 9.75}, {0.25, 9.75}, {0.25, 0.25}, {9.75, 0.25}};
+  EXPECT_EQ(route.strokes[0].points, outer);
+  const double near = 0.25 + kSpacing, far = 10 - near;
+  const std::vector<Point2> inner{{far, near}, {far, far}, {near, far}, {near, near}, {far, near}};
+  EXPECT_EQ(route.strokes[1].points, inner);
+  EXPECT_EQ(route.strokes[0].width_mm, kWidth);
+}
+
+TEST(GreedyShell, InsideOutBeginsWithTheInnermostWall) {
+  const Route route = plan(square(), context_for(3), {{"order", word("inside_out")}});
+  ASSERT_EQ(route.strokes.size(), 3U);
+  EXPECT_LT(length_mm({{route.strokes[0]}}), length_mm({{route.strokes[1]}}));
+  EXPECT_LT(length_mm({{route.strokes[1]}}), length_mm({{route.strokes[2]}}));
+}
+
+TEST(GreedyShell, NoWallsAreLaidWhereNoneAreAskedFor) {
+  EXPECT_TRUE(plan(square(), context_for(0)).strokes.empty());
+}
+
+TEST(GreedyShell, EveryWallIsClosedAndLaidOnce) {
+  for (const char* chain : {"greedy", "linear"}) {
+    for (const char* order : {"inside_out", "outside_in", "any"}) {
+      for (const Layer& layer : trial_layers()) {
+        const PlanContext context = context_for(3);
+        std::size_t rings = 0;
+        double perimeter = 0;
+        for (const Polygon& polygon : layer.polygons)
+          for (const Polygons& region : wall_regions(polygon, context)) {
+            rings += rings_of(region).size();
+            perimeter += perimeter_mm(region);
+          }
+        const Route route = plan(layer, context, {{"chain", word(chain)}, {"order", word(order)}});
+        EXPECT_EQ(route.strokes.size(), rings);
+        EXPECT_NEAR(length_mm(route), perimeter, 1e-6 * perimeter);
+        for (const Stroke& stroke : route.strokes)
+          EXPECT_EQ(stroke.points.front(), stroke.points.back());
+      }
+    }
+  }
+}
+
+TEST(GreedyShell, BothSearchesGiveTheSameRoute) {
+  for (const Layer& layer : trial_layers()) {
+    for (const char* order : {"inside_out", "any"}) {
+      for (const char* seam : {"nearest", "min_x"}) {
+        ParamSet params{{"order", word(order)}, {"seam", word(seam)}, {"search", word("grid")}};
+        const Route grid = plan(layer, context_for(2), params);
+        params["search"] = word("naive");
+        EXPECT_EQ(plan(layer, context_for(2), params), grid);
+      }
+    }
+  }
+}
+
+TEST(GreedyShell, AlwaysGoesToTheNearestVertexThatIsLeft) {
+  for (const Layer& layer : trial_layers()) {
+    PlanContext context = context_for(2);
+    context.start = {4, 30};
+    const Route route = plan(layer, context, {{"order", word("any")}});
+    Point2 nozzle = context.start;
+    for (std::size_t i = 0; i < route.strokes.size(); ++i) {
+      const double gone = squared_distance(nozzle, route.strokes[i].points.front());
+      for (std::size_t k = i; k < route.strokes.size(); ++k)
+        for (const Point2 p : route.strokes[k].points) ASSERT_LE(gone, squared_distance(nozzle, p));
+      nozzle = route.strokes[i].points.back();
+    }
+  }
+}
+
+TEST(GreedyShell, SeamsLieWhereTheRuleSays) {
+  PlanContext context = context_for(2);
+  context.origin = {1, 2};
+  const auto starts = [&](const ParamSet& params) {
+    std::vector<Point2> points;
+    for (const Stroke& stroke : plan(square(), context, params).strokes)
+      points.push_back(stroke.points.front());
+    return points;
+  };
+  const double near = 0.25 + kSpacing, far = 10 - near;
+  EXPECT_EQ(starts({{"seam", word("min_x")}}), (std::vector<Point2>{{near, near}, {0.25, 0.25}}));
+  // (8, 7) as seen from the origin is (9, 9).
+  EXPECT_EQ(starts({{"seam", word("fixed_point")}, {"seam_x_mm", 8.0}, {"seam_y_mm", 7.0}}),
+            (std::vector<Point2>{{far, far}, {9.75, 9.75}}));
+  context.start = {0, 11};
+  EXPECT_EQ(starts({}), (std::vector<Point2>{{near, far}, {0.25, 9.75}}));
+}
+
+TEST(GreedyShell, LinearTakesWallsByTheirSmallestX) {
+  PlanContext context = context_for(1);
+  context.start = {50, 0};
+  const Layer layer = layer_of({{test::rectangle(20, 0, 25, 5), {}},
+                                {test::rectangle(0, 0, 5, 5), {}},
+                                {test::rectangle(10, 0, 15, 5), {}}});
+  const Route route = plan(layer, context, {{"chain", word("linear")}, {"seam", word("min_x")}});
+  ASSERT_EQ(route.strokes.size(), 3U);
+  EXPECT_EQ(route.strokes[0].points.front(), (Point2{0.25, 0.25}));
+  EXPECT_EQ(route.strokes[1].points.front(), (Point2{10.25, 0.25}));
+  EXPECT_EQ(route.strokes[2].points.front(), (Point2{20.25, 0.25}));
+}
+
+TEST(GreedyShell, AnIslandIsFinishedBeforeTheNextOne) {
+  const Layer layer =
+      layer_of({{test::rectangle(0, 0, 5, 5), {}}, {test::rectangle(5.1, 0, 10, 5), {}}});
+  const Route route = plan(layer, context_for(3));
+  ASSERT_EQ(route.strokes.size(), 6U);
+  for (std::size_t i = 0; i < 6; ++i)
+    EXPECT_EQ(route.strokes[i].points.front().x < 5.05, i < 3) << i;
+}
+
+TEST(GreedyShell, WallsTooThinForTwoBeadsAreDroppedOrLaidThereAndBack) {
+  const Layer strip = layer_of({{test::rectangle(0, 0, 20, kWidth + 0.1), {}}});
+  EXPECT_TRUE(plan(strip, context_for(1), {{"thin", word("drop")}}).strokes.empty());
+  const Route doubled = plan(strip, context_for(1), {{"thin", word("double")}});
+  ASSERT_EQ(doubled.strokes.size(), 1U);
+  EXPECT_NEAR(length_mm(doubled), 2 * (20 - kWidth) + 2 * 0.1, 1e-6);
+  const Layer wide = layer_of({{test::rectangle(0, 0, 20, kWidth + 0.6 * kSpacing), {}}});
+  EXPECT_EQ(plan(wide, context_for(1), {{"thin", word("drop")}}).strokes.size(), 1U);
+}
+
+TEST(GreedyShell, SmallIslandsAreWalledTwiceOnRequest) {
+  const Layer layer =
+      layer_of({{test::rectangle(0, 0, 1.2, 1.2), {}}, {test::rectangle(5, 0, 15, 10), {}}});
+  const Route once = plan(layer, context_for(1));
+  const Route twice = plan(layer, context_for(1), {{"small_twice", true}});
+  ASSERT_EQ(once.strokes.size(), 2U);
+  ASSERT_EQ(twice.strokes.size(), 2U);
+  EXPECT_NEAR(length_mm({{twice.strokes[0]}}), 2 * length_mm({{once.strokes[0]}}), 1e-9);
+  EXPECT_EQ(twice.strokes[0].points.front(), twice.strokes[0].points.back());
+  EXPECT_EQ(twice.strokes[1], once.strokes[1]);
+}
+
+TEST(GreedyShell, WallsFollowTheOutlineOfALivelyLayer) {
+  const Polygons outline = test::blob();
+  const Route route = plan(layer_of(outline), context_for(2));
+  double reached = 0, all = 0;
+  for (const Ring& ring : rings_of(outline)) {
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      const Point2 a = ring[i], b = ring[(i + 1) % ring.size()];
+      const Point2 middle = lerp(a, b, 0.5);
+      double nearest = std::numeric_limits<double>::infinity();
+      for (const Stroke& stroke : route.strokes)
+        for (std::size_t k = 1; k < stroke.points.size(); ++k)
+          nearest = std::min(
+              nearest,
+              distance(middle, nearest_on_segment(middle, stroke.points[k - 1], stroke.points[k])));
+      all += distance(a, b);
+      if (nearest <= kWidth) reached += distance(a, b);
+    }
+  }
+  EXPECT_GE(reached, 0.99 * all);
+}
+
+}  // namespace
+}  // namespace routebench
