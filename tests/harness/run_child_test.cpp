@@ -212,11 +212,12 @@ TEST(ChildPool, WhatAChildStartedEndsWithIt) {
 }
 
 TEST(ChildPool, LeavesNoCoreFileAndNoZombie) {
-  static_cast<void>(end_of([](ChildProgress&) {
+  const ChildEnd end = end_of([](ChildProgress&) {
     rlimit core{};
     getrlimit(RLIMIT_CORE, &core);
     return std::to_string(core.rlim_cur);
-  }));
+  });
+  EXPECT_EQ(end.text, "0");
   EXPECT_EQ(waitpid(-1, nullptr, WNOHANG), -1);
 }
 
