@@ -27,14 +27,14 @@ std::unique_ptr<const Planner> make_planner(const SlotSpec& slot, PlannerRole ro
                                             ParamSet& resolved) {
   const Registry::Entry& entry = registry.at(slot.planner);
   if (entry.info.role != role) {
-    const bool shell = role == PlannerRole::kShell;
     std::string known;
     for (const auto& [name, other] : registry.entries())
       if (other.info.role == role) known += (known.empty() ? "" : ", ") + name;
-    throw Error(ErrorKind::kBadInput, "contender " + contender + ": " + slot.planner + " is no " +
-                                          (shell ? "shell" : "fill") + " planner; name it as " +
-                                          (shell ? "fill" : "shell") + ", or take one of: " +
-                                          (known.empty() ? "(none is registered)" : known));
+    throw Error(ErrorKind::kBadInput,
+                "contender " + contender + ": " + slot.planner + " is no " +
+                    std::string(to_string(role)) + " planner; name it as " +
+                    std::string(to_string(entry.info.role)) +
+                    ", or take one of: " + (known.empty() ? "(none is registered)" : known));
   }
   resolved = entry.resolve(slot.params);
   return entry.make(slot.params);
@@ -154,6 +154,10 @@ void share_out(const Polygons& regions, const IslandTree& tree, std::vector<Isla
 }
 
 }  // namespace
+
+std::string_view to_string(PlannerRole role) {
+  return role == PlannerRole::kShell ? "shell" : "fill";
+}
 
 std::string_view to_string(LayerOrder order) {
   return kOrderNames[static_cast<std::size_t>(order)];

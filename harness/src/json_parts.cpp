@@ -22,22 +22,24 @@ bool read_all(const std::string& text, Number& number) {
   return error == std::errc{} && end == text.data() + text.size();
 }
 
-Json key_values_json(const std::vector<KeyValue>& table) {
+/// A number, two of them, or text.
+Json json_of_value(const std::string& text) {
+  double number = 0;
+  if (read_all(text, number)) return number_json(number);
+  const std::size_t comma = text.find(',');
+  if (comma == text.npos) return text;
+  return {json_of_value(text.substr(0, comma)), json_of_value(text.substr(comma + 1))};
+}
+
+Json json_of_values(const std::vector<KeyValue>& table) {
   Json json = Json::object();
-  for (const auto& [key, value] : table) {
-    double number = 0;
-    if (read_all(value, number)) {
-      json[key] = number_json(number);
-    } else {
-      json[key] = value;
-    }
-  }
+  for (const auto& [key, value] : table) json[key] = json_of_value(value);
   return json;
 }
 
 Json slot_json(const std::optional<SlotSpec>& slot, const ParamSet& params) {
   if (!slot) return nullptr;
-  return {{"planner", slot->planner}, {"params", params_json(params)}};
+  return {{"planner", slot->planner}, {"params", json_of(params)}};
 }
 
 Json point_json(Point3 p) { return {p.x, p.y, p.z}; }
@@ -58,21 +60,21 @@ std::string_view type_name(ParamType type) {
 
 }  // namespace
 
-Json param_json(const ParamValue& value) {
+Json json_of(const ParamValue& value) {
   return std::visit([](const auto& held) { return Json(held); }, value);
 }
 
-Json params_json(const ParamSet& params) {
+Json json_of(const ParamSet& params) {
   Json json = Json::object();
-  for (const auto& [name, value] : params) json[name] = param_json(value);
+  for (const auto& [name, value] : params) json[name] = json_of(value);
   return json;
 }
 
-Json task_json(const Task& task) { return key_values_json(task_values(task)); }
+Json json_of(const Task& task) { return json_of_values(task_values(task)); }
 
-Json printer_json(const Printer& printer) { return key_values_json(printer_values(printer)); }
+Json json_of(const Printer& printer) { return json_of_values(printer_values(printer)); }
 
-Json contender_json(const Contender& contender) {
+Json json_of(const Contender& contender) {
   const ContenderSpec& spec = contender.spec();
   return {{"name", spec.name},
           {"shell", slot_json(spec.shell, contender.shell_params())},
@@ -80,7 +82,7 @@ Json contender_json(const Contender& contender) {
           {"order", to_string(spec.order)}};
 }
 
-Json mesh_json(const MeshReport& report) {
+Json json_of(const MeshReport& report) {
   return {{"triangles", report.triangles},
           {"vertices", report.vertices},
           {"lower_mm", point_json(report.lower_mm)},
@@ -94,7 +96,7 @@ Json mesh_json(const MeshReport& report) {
           {"volume_mm3", report.volume_mm3}};
 }
 
-Json slice_report_json(const SliceReport& report) {
+Json json_of(const SliceReport& report) {
   return {{"cracks_closed", report.cracks_closed},
           {"widest_crack_mm", report.widest_crack_mm},
           {"gaps_repaired", report.gaps_repaired},
@@ -102,7 +104,7 @@ Json slice_report_json(const SliceReport& report) {
           {"repaired_layers", report.repaired_layers}};
 }
 
-Json scores_json(const Scores& scores) {
+Json json_of(const Scores& scores) {
   Json json = Json::object();
   const auto table = metric_table();
   for (std::size_t i = 0; i < table.size(); ++i) {
@@ -112,7 +114,7 @@ Json scores_json(const Scores& scores) {
   return json;
 }
 
-Json strokes_json(const PlannedLayer& planned) {
+Json json_of(const PlannedLayer& planned) {
   Json json = Json::array();
   for (std::size_t i = 0; i < planned.route.strokes.size(); ++i) {
     const Stroke& stroke = planned.route.strokes[i];
@@ -125,12 +127,12 @@ Json strokes_json(const PlannedLayer& planned) {
   return json;
 }
 
-Json schema_json(const std::vector<ParamSchema>& params) {
+Json json_of(const std::vector<ParamSchema>& params) {
   Json json = Json::array();
   for (const ParamSchema& param : params) {
     Json one = {{"name", param.name},
                 {"type", type_name(param.type)},
-                {"default", param_json(param.default_value)},
+                {"default", json_of(param.default_value)},
                 {"lowest", param.lowest ? number_json(*param.lowest) : Json(nullptr)},
                 {"highest", param.highest ? number_json(*param.highest) : Json(nullptr)},
                 {"choices", param.choices},
@@ -141,16 +143,13 @@ Json schema_json(const std::vector<ParamSchema>& params) {
   return json;
 }
 
-Json planner_json(const Registry::Entry& entry) {
-  return {{"name", entry.info.name},
-          {"role", entry.info.role == PlannerRole::kShell ? "shell" : "fill"},
-          {"summary", entry.info.summary},
-          {"source", entry.info.source},
-          {"origin", entry.origin},
-          {"params", schema_json(entry.params)}};
+Json json_of(const Registry::Entry& entry) {
+  return {{"name", entry.info.name},       {"role", to_string(entry.info.role)},
+          {"summary", entry.info.summary}, {"source", entry.info.source},
+          {"origin", entry.origin},        {"params", json_of(entry.params)}};
 }
 
-Json plugin_json(const PluginRecord& plugin) {
+Json json_of(const PluginRecord& plugin) {
   return {{"file", plugin.file},
           {"loaded", plugin.loaded},
           {"refused_because", plugin.loaded ? Json(nullptr) : Json(plugin.refused_because)},

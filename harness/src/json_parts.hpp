@@ -18,30 +18,30 @@ namespace routebench {
 /// Keeps keys in the order in which they were set.
 using Json = nlohmann::ordered_json;
 
-[[nodiscard]] Json param_json(const ParamValue& value);
-[[nodiscard]] Json params_json(const ParamSet& params);
+[[nodiscard]] Json json_of(const ParamValue& value);
+[[nodiscard]] Json json_of(const ParamSet& params);
 
-/// Every key of the table with its value: numbers as numbers, the rest as text.
-[[nodiscard]] Json task_json(const Task& task);
-[[nodiscard]] Json printer_json(const Printer& printer);
+/// Every key of the table with its value: numbers as numbers, points as [x, y], the rest as text.
+[[nodiscard]] Json json_of(const Task& task);
+[[nodiscard]] Json json_of(const Printer& printer);
 
 /// name, shell, fill (each with planner and every parameter, null if absent), order.
-[[nodiscard]] Json contender_json(const Contender& contender);
+[[nodiscard]] Json json_of(const Contender& contender);
 
-[[nodiscard]] Json mesh_json(const MeshReport& report);
-[[nodiscard]] Json slice_report_json(const SliceReport& report);
+[[nodiscard]] Json json_of(const MeshReport& report);
+[[nodiscard]] Json json_of(const SliceReport& report);
 
 /// Every metric of the table by name, null where it does not apply. A whole number is written
 /// without a point; any other reads back exactly.
-[[nodiscard]] Json scores_json(const Scores& scores);
+[[nodiscard]] Json json_of(const Scores& scores);
 
 /// An array of {"kind", "width_mm", "points": [[x, y], ...]}.
-[[nodiscard]] Json strokes_json(const PlannedLayer& planned);
+[[nodiscard]] Json json_of(const PlannedLayer& planned);
 
 /// Parameters as a planner declares them.
-[[nodiscard]] Json schema_json(const std::vector<ParamSchema>& params);
-[[nodiscard]] Json planner_json(const Registry::Entry& entry);
-[[nodiscard]] Json plugin_json(const PluginRecord& plugin);
+[[nodiscard]] Json json_of(const std::vector<ParamSchema>& params);
+[[nodiscard]] Json json_of(const Registry::Entry& entry);
+[[nodiscard]] Json json_of(const PluginRecord& plugin);
 
 /// The text of a document: two spaces a level, or one line if `compact`. Bytes that are no UTF-8
 /// (of file names) become replacement characters.

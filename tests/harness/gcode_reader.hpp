@@ -59,7 +59,7 @@ inline GcodeRun read_gcode(const std::string& text) {
       if (word.count('X')) x = word['X'];
       if (word.count('Y')) y = word['Y'];
       if (word.count('Z')) z = word['Z'];
-      const double length = std::hypot(*x - from.x, *y - from.y);
+      const double length = std::hypot(x.value_or(0) - from.x, y.value_or(0) - from.y);
       if (moves && e > 0) {
         if (!pushing) {
           run.strokes.push_back({from});

@@ -18,6 +18,9 @@
 
 namespace routebench {
 
+/// The slot that planners of a role fill: "shell", "fill".
+[[nodiscard]] std::string_view to_string(PlannerRole role);
+
 struct SlotSpec {
   std::string planner;
   ParamSet params;  ///< as given; see Registry::Entry::resolve
