@@ -315,11 +315,12 @@ TEST_F(Runner, NothingIsWrittenIfAnythingIsWrongBeforehand) {
 }
 
 TEST_F(Runner, SettingsThatCutAlikeShareTheirLayersAndTheOthersDoNot) {
-  execute(parse_config(
-      "name = \"t\"\nmodels = [\"small.wkt\"]\n[task]\nperimeters = 0\ndensity = [0.5, 1]\n"
-      "[printer]\nretract_over_mm = [1, 100]\n[run]\nrepetitions = 1\n" +
-          hatch_contender("a"),
-      dir_.path() / "t.toml"));
+  execute(
+      parse_config("name = \"t\"\nmodels = [\"small.wkt\"]\n[task]\nperimeters = 0\ndensity = "
+                   "[0.5, 1]\nskin_layers = 0\n"
+                   "[printer]\nretract_over_mm = [1, 100]\n[run]\nrepetitions = 1\n" +
+                       hatch_contender("a"),
+                   dir_.path() / "t.toml"));
   ASSERT_EQ(cells().size(), 4u);
   std::set<std::string> labels;
   for (const StoredCell& cell : cells()) {

@@ -30,13 +30,11 @@ void run(const Arguments& arguments) {
 
 void add_export_command(CLI::App& app, int& exit_code) {
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = app.add_subcommand("export", "Write results as CSV files");
-  command->add_option("results", arguments->results, "A folder of results, or the database in it")
-      ->required()
-      ->type_name("RESULTS");
-  command->add_option("--out", arguments->out, "Where the files go; RESULTS/csv if not given")
-      ->type_name("DIR");
-  command->footer(
+  CLI::App& command = *app.add_subcommand("export", "write results as CSV files");
+  command.add_option("RESULTS", arguments->results, "a folder of results, or the database in it")
+      ->required();
+  command.add_option("--out", arguments->out, "where the files go [RESULTS/csv]")->type_name("DIR");
+  command.footer(
       "cells.csv       one row a cell and metric: experiment, model, contender, setting, seed,\n"
       "                outcome, reason, layers, route_hash, metric, value, unit, better\n"
       "layers.csv      one row a cell and layer, a column a metric\n"
@@ -45,7 +43,7 @@ void add_export_command(CLI::App& app, int& exit_code) {
       "UTF-8, a header line each, fields quoted where they must be (RFC 4180); an empty field is "
       "a\n"
       "value that does not apply. Rows about cells are of the last run's config.");
-  command->callback([arguments, &exit_code] {
+  command.callback([arguments, &exit_code] {
     run(*arguments);
     exit_code = 0;
   });

@@ -5,6 +5,7 @@
 #include <iostream>
 #include <memory>
 
+#include "arguments.hpp"
 #include "routebench/geometry/error.hpp"
 #include "routebench/harness/commands.hpp"
 #include "routebench/harness/config.hpp"
@@ -89,41 +90,31 @@ int run(const Arguments& arguments) {
 
 void add_run_command(CLI::App& app, int& exit_code) {
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = app.add_subcommand("run", "Execute an experiment and rank its contenders");
-  command->add_option("config", arguments->config, "The experiment, a TOML file")
-      ->required()
-      ->type_name("CONFIG.toml");
-  command->add_option("--out", arguments->out, "Folder of the results; results/NAME if not given")
+  CLI::App& command = *app.add_subcommand("run", "execute an experiment and rank its contenders");
+  command.add_option("CONFIG", arguments->config, "the experiment, a TOML file")->required();
+  command.add_option("--out", arguments->out, "folder of the results [results/NAME]")
       ->type_name("DIR");
   command
-      ->add_option(
-          "--jobs", arguments->jobs,
-          "Cells at a time, 0 for one a core; timing samples are always taken one at a time")
+      .add_option("--jobs,-j", arguments->jobs,
+                  "cells at a time; 0: one a core. Timing samples are always taken one at a time "
+                  "[as the config says]")
       ->check(CLI::Range(0, 1024))
       ->type_name("N");
-  command->add_flag("--fresh", arguments->fresh,
-                    "Start anew; the old results are replaced when the first new cell is done");
-  command->add_flag("--dry-run", arguments->dry_run,
-                    "Check everything and say what would be executed, but write nothing");
-  command->add_flag("--repair", arguments->repair,
-                    "Slice broken models as well as can be, and mark the layers concerned");
-  command
-      ->add_option("--plugin", arguments->plugins, "A planner plugin; may be given several times")
-      ->type_name("FILE.so")
-      ->expected(1)
-      ->take_all();
-  command
-      ->add_option("--only", arguments->only,
-                   "Execute only these: contender=NAME or model=SPEC; may be given several times")
-      ->type_name("WHAT")
-      ->expected(1)
-      ->take_all();
-  command->footer(
+  command.add_flag("--fresh", arguments->fresh,
+                   "start anew; the old results are replaced when the first new cell is done");
+  command.add_flag("--dry-run", arguments->dry_run,
+                   "check everything and say what would be executed, but write nothing");
+  command.add_flag("--repair", arguments->repair,
+                   "slice broken models as well as can be, and mark the layers concerned");
+  add_plugin_option(command, arguments->plugins);
+  add_repeated(command, "--only", arguments->only, "WHAT",
+               "execute only these: contender=NAME or model=SPEC; may be given several times");
+  command.footer(
       "Cells that the results hold already are not executed again, so the same command goes on\n"
       "after an interruption. Ctrl-C keeps what is done.\n"
       "Exit codes: 0 all cells valid, 1 some are not, 2 bad usage, config or model, 3 internal\n"
       "error, 130 interrupted.");
-  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+  command.callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 
 }  // namespace routebench
