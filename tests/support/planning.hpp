@@ -66,7 +66,7 @@ inline std::vector<Layer> trial_layers() {
 
 /// Share of the polygons' area that lies under beads, by looking at the points of a turned lattice.
 inline double share_under_beads(const Polygons& polygons, const Route& route,
-                                double pitch_mm = 0.07) {
+                                double pitch_mm = 0.11) {
   const EdgeGrid edges(polygons);
   const Box2 box = bounding_box(polygons);
   const Point2 centre = lerp(box.lower, box.upper, 0.5);
