@@ -6,7 +6,7 @@
 #include <string>
 
 #include "routebench/geometry/error.hpp"
-#include "routebench/planning/params.hpp"
+#include "routebench/geometry/nearest_name.hpp"
 
 namespace routebench {
 
@@ -34,6 +34,11 @@ constexpr std::array kMetrics{
                "runs of material without a stop, strokes that meet joined"},
     MetricInfo{"covered", "Covered", "", kHigher, kArea,
                "share of the area that is filled as the task demands"},
+    MetricInfo{"skipped", "Skipped", "", kLower, kArea,
+               "share of the area, inside the walls, where too little of the demanded material is "
+               "laid round about"},
+    MetricInfo{"worst_layer", "Worst layer", "", kLower, kMax,
+               "largest share of a layer's area that was left out"},
     MetricInfo{"deposit", "Deposit", "", kNeither, kDemand,
                "deposited volume as a multiple of the demanded volume"},
     MetricInfo{"doubled", "Doubled", "", kLower, kArea,

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "routebench/geometry/error.hpp"
-#include "routebench/planning/params.hpp"
+#include "routebench/geometry/nearest_name.hpp"
 
 namespace routebench {
 
@@ -62,6 +62,8 @@ void visit_keys_of_task(AnyTask& task, Visit&& visit) {
   visit("join_mm", task.join_mm, Rule<double>{0, 10, "mm"});
   visit("start_mm", task.start_mm, Rule<Point2>{100000});
   visit("gate_covered_min", task.gate.covered_min, Rule<double>{0, 1, ""});
+  visit("gate_skipped_max", task.gate.skipped_max, Rule<double>{0, 1, ""});
+  visit("gate_worst_layer_max", task.gate.worst_layer_max, Rule<double>{0, 1, ""});
   visit("gate_deposit_min", task.gate.deposit_min, Rule<double>{0, 1000, ""});
   visit("gate_deposit_max", task.gate.deposit_max, Rule<double>{0, 1000, ""});
   visit("gate_outline_covered_min", task.gate.outline_covered_min, Rule<double>{0, 1, ""});

@@ -63,7 +63,7 @@ TEST(Task, EveryListedValueCanBeSetAgain) {
   EXPECT_EQ(task.start_mm, (Point2{-1.25, 300}));
   Task copy;
   for (const KeyValue& entry : task_values(task)) set_task_value(copy, entry.key, entry.value);
-  ASSERT_EQ(task_values(task).size(), 14U);
+  ASSERT_EQ(task_values(task).size(), 16U);
   for (const KeyValue& entry : task_values(task))
     EXPECT_EQ(value_of(task_values(copy), entry.key), entry.value) << entry.key;
   EXPECT_EQ(value_of(task_values(copy), "layer_height_mm"), "0.1");

@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "routebench/geometry/types.hpp"
@@ -43,17 +44,26 @@ class Judge {
   Judge(Task task, Printer printer);
 
   /// Scores one layer's route.
-  /// Takes   where the layer below really ended (nothing for the first layer: its entry travel is
-  /// 0). Returns every metric of the table that a layer has; plan_*_ns and peak_rss_bytes are left
-  /// empty. Cost    linear in strokes and in samples of coverage (0.05 mm grid, rotated: an
-  /// axis-aligned one is wrong by up to 5 %).
+  ///
+  /// Takes   what demand_of makes of the layer, and where the layer below really ended (nothing for
+  ///         the first layer: its entry travel is 0).
+  /// Returns every metric of the table that a layer has; plan_*_ns and peak_rss_bytes are left
+  ///         empty, and so are shares of an area too small to be sampled.
+  /// Throws  Error{kBadInput} for a stroke that is none: see the message.
+  /// Cost    linear in strokes and in samples of coverage (0.05 mm grid, rotated: an axis-aligned
+  ///         one is wrong by up to 5 %).
   [[nodiscard]] LayerScore score(const Layer& layer, const Demand& demand, const Route& route,
                                  std::optional<Point2> previous_end) const;
 
   /// Totals of a cell, by each metric's rule.
   [[nodiscard]] Scores total(std::span<const LayerScore> layers) const;
 
-  /// Whether the contender did the task at all.
+  /// Whether the contender did the task at all, by the task's gate.
+  ///
+  /// What is covered and deposited on the whole would let pass a route that leaves out thin slices
+  /// of a sparse filling, or one layer of many. Hence two limits more: on what is `skipped` (see
+  /// there; a planner that leaves out 5 % of the area misses it by far, an honest one keeps well
+  /// within it), and on the `worst_layer`.
   [[nodiscard]] Verdict verdict(const Scores& totals) const;
 
   [[nodiscard]] const Task& task() const noexcept { return task_; }

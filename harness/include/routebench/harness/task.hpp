@@ -14,6 +14,8 @@ namespace routebench {
 /// The gate's limits: what a route may miss or overdo and still count as having done the task.
 struct GateLimits {
   double covered_min = 0.95;
+  double skipped_max = 0.035;
+  double worst_layer_max = 0.4;
   double deposit_min = 0.85;
   double deposit_max = 1.15;
   double outline_covered_min = 0.95;  ///< only if walls are asked for
@@ -39,6 +41,12 @@ struct Task {
   }
   /// Section of a bead, mm2: (w - h) h + pi h^2 / 4 = spacing x height.
   [[nodiscard]] double bead_section_mm2() const noexcept { return spacing_mm() * layer_height_mm; }
+  /// Mean width of a bead of any width, section / height: of the task's own width its spacing.
+  /// Under one layer height a bead is an ellipse.
+  [[nodiscard]] double mean_width_mm(double width_mm) const noexcept {
+    return width_mm >= layer_height_mm ? width_mm - layer_height_mm * (1 - std::numbers::pi / 4)
+                                       : width_mm * std::numbers::pi / 4;
+  }
 };
 
 /// When a travel is made with the filament pulled back.

@@ -1,0 +1,1 @@
+"""Figures and tables of a routebench experiment, from its database alone."""

@@ -1,0 +1,138 @@
+"""The command behind `routebench plot`."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import shutil
+import signal
+import sys
+import tempfile
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import NoReturn
+
+from .errors import PlotError
+from .figures import chosen_metrics, draw_all
+from .naming import printable
+from .results import Results, find_database
+from .sheet import FORMATS
+
+EXIT_DONE = 0
+EXIT_BAD_INPUT = 2
+EXIT_INTERNAL = 3
+EXIT_INTERRUPTED = 128 + signal.SIGINT
+_DEFAULT_FORMATS = "png,svg"
+_INDEX = ".routebench-plots"
+"""Names of the files of the last time, so that none of them goes stale."""
+
+
+class _Parser(argparse.ArgumentParser):
+    def error(self, message: str) -> NoReturn:
+        raise PlotError(f"{message} (see routebench plot --help)")
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Plots, prints the files written, and returns the exit code."""
+    signal.signal(signal.SIGTERM, _exit_on_signal)
+    try:
+        paths = _run(arguments)
+    except PlotError as error:
+        return _complain(str(error), EXIT_BAD_INPUT)
+    except OSError as error:
+        return _complain(f"{error.filename}: {error.strerror}", EXIT_BAD_INPUT)
+    except KeyboardInterrupt:
+        return _complain("interrupted, nothing written", EXIT_INTERRUPTED)
+    except Exception as error:  # the last resort: still one line
+        return _complain(f"internal error: {error!r}", EXIT_INTERNAL)
+    _print_paths(paths)
+    return EXIT_DONE
+
+
+def _complain(message: str, exit_code: int) -> int:
+    print(f"routebench: {printable(message)}", file=sys.stderr)
+    return exit_code
+
+
+def _print_paths(paths: Sequence[Path]) -> None:
+    """One a line, byte for byte as the system has them."""
+    try:
+        for path in paths:
+            sys.stdout.buffer.write(os.fsencode(path) + b"\n")
+        sys.stdout.flush()
+    except BrokenPipeError:
+        # Whoever asked has read enough; Python would complain at its end.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def _run(arguments: Sequence[str] | None) -> list[Path]:
+    options = _parse(arguments)
+    formats = _formats(options.formats)
+    database = find_database(options.results)
+    out = options.out or database.parent / "plots"
+    with Results(database) as results:
+        names = options.metrics.split(",") if options.metrics else None
+        metrics = chosen_metrics(results, names)
+        with _staging(out) as folder:
+            written = draw_all(results, metrics, folder, formats)
+            _publish(folder, out, written)
+    return [out / name for name in written]
+
+
+def _parse(arguments: Sequence[str] | None) -> argparse.Namespace:
+    parser = _Parser(prog="routebench plot", description=__doc__)
+    parser.add_argument("results", type=Path)
+    parser.add_argument("--out", type=Path)
+    parser.add_argument("--formats", default=_DEFAULT_FORMATS)
+    parser.add_argument("--metrics")
+    return parser.parse_args(arguments)
+
+
+def _formats(text: str) -> list[str]:
+    formats = list(dict.fromkeys(text.split(",")))
+    for name in formats:
+        if name not in FORMATS:
+            raise PlotError(
+                f"--formats {text}: '{name}' is none of {', '.join(FORMATS)}"
+            )
+    return formats
+
+
+@contextmanager
+def _staging(out: Path) -> Iterator[Path]:
+    """A folder beside `out` that is gone afterwards, whatever happens."""
+    places = [out, *out.absolute().parents]
+    beside = next(place for place in places if place.exists())
+    try:
+        folder = Path(tempfile.mkdtemp(prefix=".plots-", dir=beside))
+    except OSError as error:
+        raise PlotError(
+            f"{out}: cannot write figures there: {error.strerror}"
+        ) from error
+    try:
+        yield folder
+    except OSError as error:
+        raise PlotError(
+            f"{out}: cannot write figures there: {error.strerror}"
+        ) from error
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def _publish(folder: Path, out: Path, written: Sequence[str]) -> None:
+    """Moves finished files in and removes those of an earlier time."""
+    out.mkdir(parents=True, exist_ok=True)
+    index = out / _INDEX
+    earlier = index.read_text("utf-8").split("\n") if index.is_file() else []
+    for name in written:
+        os.replace(folder / name, out / name)
+    for name in set(earlier) - set(written) - {""}:
+        if Path(name).name == name:
+            (out / name).unlink(missing_ok=True)
+    index.write_text("\n".join(written) + "\n", encoding="utf-8")
+
+
+def _exit_on_signal(number: int, _: object) -> NoReturn:
+    """Lets `finally` run: nothing half-written stays behind."""
+    sys.exit(128 + number)

@@ -1,0 +1,68 @@
+"""Names: no two alike in a figure, and safe ones for files."""
+
+from __future__ import annotations
+
+import hashlib
+import re
+import unicodedata
+from collections import Counter
+from collections.abc import Sequence
+
+_SLUG_LENGTH = 60
+_HASH_LENGTH = 7
+
+
+def distinct_labels(names: Sequence[tuple[str, str]]) -> list[str]:
+    """Labels for (name, hash) pairs: the name, with its hash if need be.
+
+    A name is not enough where a database holds, say, a contender with the
+    parameters of last week and with those of today.
+    """
+    shown = [printable(name) for name, _ in names]
+    counts = Counter(shown)
+    labels = [
+        name
+        if counts[name] == 1
+        else f"{name} [{digits[:_HASH_LENGTH]}]".strip()
+        for name, (_, digits) in zip(shown, names)
+    ]
+    seen: Counter[str] = Counter()
+    for place, label in enumerate(labels):
+        seen[label] += 1
+        if seen[label] > 1:
+            labels[place] = f"{label} #{seen[label]}"
+    return labels
+
+
+def printable(text: str) -> str:
+    """The text on one line, without what a page cannot show."""
+    return " ".join(
+        "".join(
+            " " if unicodedata.category(char)[0] in "CZ" else char
+            for char in text
+        ).split()
+    )
+
+
+def file_slugs(labels: Sequence[str]) -> dict[str, str]:
+    """A piece of a file name for each label; no two alike in any case."""
+    plain = {label: _plain_slug(label) for label in labels}
+    counts = Counter(slug.lower() for slug in plain.values())
+    return {
+        label: (
+            slug
+            if counts[slug.lower()] == 1 and len(slug) <= _SLUG_LENGTH
+            else f"{slug[:_SLUG_LENGTH]}-{short_hash(label)}"
+        )
+        for label, slug in plain.items()
+    }
+
+
+def short_hash(text: str) -> str:
+    """A few digits that tell one text from another."""
+    return hashlib.sha256(text.encode()).hexdigest()[:_HASH_LENGTH]
+
+
+def _plain_slug(label: str) -> str:
+    slug = re.sub(r"[^A-Za-z0-9.=_]+", "-", label).strip("-.")
+    return slug or "default"

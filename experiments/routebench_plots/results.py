@@ -1,0 +1,390 @@
+"""Reads the database of an experiment.
+
+Nothing else is read, and the database is never written. What the figures
+need to know about a contender on a model under a setting is a `Slot`.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import sqlite3
+import statistics
+from collections import Counter, defaultdict
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+from urllib.parse import quote
+
+from .errors import PlotError
+from .naming import distinct_labels, printable
+
+SCHEMA_VERSION = "1"
+DATABASE_NAME = "results.sqlite"
+
+VALID = "valid"
+NOT_RUN = "not_run"
+"""What a slot without any cell is called; no outcome of the database."""
+
+TIMED_METRICS = ("plan_wall_ns", "plan_cpu_ns")
+"""Metrics whose every repetition is kept in the table timing_sample."""
+
+
+@dataclass(frozen=True)
+class Metric:
+    """One row of the table that says what is measured."""
+
+    name: str
+    label: str
+    unit: str
+    better: str
+    total: str
+    meaning: str
+
+
+@dataclass(frozen=True)
+class Item:
+    """A model, contender or setting with a label that no other one has."""
+
+    row_id: int
+    label: str
+
+
+@dataclass(frozen=True)
+class Cell:
+    """One contender's work on one model with one seed."""
+
+    cell_id: int
+    seed: int
+    outcome: str
+    reason: str
+
+
+@dataclass(frozen=True)
+class Value:
+    """Median and range of a metric over the seeds or repetitions."""
+
+    median: float
+    low: float
+    high: float
+    samples: int
+
+
+@dataclass(frozen=True)
+class Slot:
+    """What is known of a contender on a model: one cell for each seed."""
+
+    cells: tuple[Cell, ...] = ()
+
+    @property
+    def valid(self) -> tuple[Cell, ...]:
+        """The cells that are ranked."""
+        return tuple(c for c in self.cells if c.outcome == VALID)
+
+    @property
+    def outcomes(self) -> Counter[str]:
+        """How many cells ended in which way."""
+        if not self.cells:
+            return Counter({NOT_RUN: 1})
+        return Counter(cell.outcome for cell in self.cells)
+
+
+@dataclass(frozen=True)
+class LayerRows:
+    """Scores of a cell's layers, lowest first; NaN where none applies."""
+
+    z_mm: list[float]
+    repaired: list[bool]
+    columns: dict[str, list[float]]
+
+
+def find_database(results: Path) -> Path:
+    """The database that `results`, a folder or the file itself, means."""
+    database = results / DATABASE_NAME if results.is_dir() else results
+    if not database.is_file():
+        raise PlotError(
+            f"{results}: no results database here; give the folder that "
+            f"'routebench run' wrote, or its {DATABASE_NAME}"
+        )
+    return database
+
+
+class Results:
+    """The cells of an experiment's last run, seen at one moment.
+
+    Models and settings stand in the order of the config, contenders in
+    that of their names, which decides how they look.
+    """
+
+    def __init__(self, database: Path) -> None:
+        self.database = database
+        self._connection = _open(database)
+        try:
+            self._check_schema()
+            self._slots, self.earlier_cells = self._read_slots()
+            self.experiment = self._read_experiment()
+            self.metrics = self._read_metrics()
+            self.models = self._read_items(
+                "model", "spec, mesh_hash || layers_hash"
+            )
+            self.contenders = tuple(
+                sorted(
+                    self._read_items("contender", "name, variant_hash"),
+                    key=lambda item: item.label,
+                )
+            )
+            self.settings = self._read_items("setting", "label, setting_hash")
+            self._scores = self._read_scores()
+            self._samples = self._read_samples()
+            self._tasks = self._read_tasks()
+            self._layer_columns = frozenset(
+                row[1] for row in self._query("PRAGMA table_info(layer_score)")
+            )
+        except PlotError:
+            self.close()
+            raise
+
+    def __enter__(self) -> Results:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Lets go of the file."""
+        self._connection.close()
+
+    def metric(self, name: str) -> Metric | None:
+        """The metric of that name, if this database has it."""
+        return next((m for m in self.metrics if m.name == name), None)
+
+    def slot(self, setting: Item, model: Item, contender: Item) -> Slot:
+        """What is known of a contender on a model under a setting."""
+        key = (setting.row_id, model.row_id, contender.row_id)
+        return self._slots.get(key, Slot())
+
+    def value(self, slot: Slot, metric: Metric) -> Value | None:
+        """The metric over the slot's valid cells; None where absent.
+
+        Times are taken from their repetitions, everything else from the
+        cells' totals.
+        """
+        found: list[float] = []
+        for cell in slot.valid:
+            samples = self._samples.get((cell.cell_id, metric.name))
+            if samples:
+                found += samples
+            elif (cell.cell_id, metric.name) in self._scores:
+                found.append(self._scores[cell.cell_id, metric.name])
+        if not found:
+            return None
+        return Value(
+            statistics.median(found), min(found), max(found), len(found)
+        )
+
+    def task_number(self, setting: Item, key: str) -> float | None:
+        """A number that the setting's task has under `key`, if any."""
+        return _number(self._tasks[setting.row_id].get(key))
+
+    def layer_rows(self, cell: Cell, metrics: Sequence[Metric]) -> LayerRows:
+        """The scores of the cell's layers, upwards."""
+        names = [m.name for m in metrics if m.name in self._layer_columns]
+        columns = "".join(f", {_identifier(name)}" for name in names)
+        rows = self._query(
+            f"SELECT z_mm, repaired{columns} FROM layer_score "
+            "WHERE cell_id = ? ORDER BY z_mm, layer_index",
+            (cell.cell_id,),
+        )
+        return LayerRows(
+            z_mm=[_or_nan(row[0]) for row in rows],
+            repaired=[bool(row[1]) for row in rows],
+            columns={
+                name: [_or_nan(row[place]) for row in rows]
+                for place, name in enumerate(names, start=2)
+            },
+        )
+
+    def layer_value(
+        self, cell: Cell, layer_index: int, metric: Metric
+    ) -> float | None:
+        """One score of one layer of a cell."""
+        if metric.name not in self._layer_columns:
+            return None
+        rows = self._query(
+            f"SELECT {_identifier(metric.name)} FROM layer_score "
+            "WHERE cell_id = ? AND layer_index = ?",
+            (cell.cell_id, layer_index),
+        )
+        return _number(rows[0][0]) if rows else None
+
+    def kept_layers(self, model: Item) -> list[tuple[int, float]]:
+        """Index and height of the layers whose pictures were kept."""
+        rows = self._query(
+            "SELECT layer_index, z_mm FROM layer_shape WHERE model_id = ? "
+            "ORDER BY layer_index",
+            (model.row_id,),
+        )
+        return [(int(row[0]), float(row[1])) for row in rows]
+
+    def layer_wkt(self, model: Item, layer_index: int) -> str:
+        """The material of a kept layer."""
+        rows = self._query(
+            "SELECT wkt FROM layer_shape "
+            "WHERE model_id = ? AND layer_index = ?",
+            (model.row_id, layer_index),
+        )
+        return str(rows[0][0])
+
+    def route_json(self, cell: Cell, layer_index: int) -> str | None:
+        """The route of a kept layer, if the cell came that far."""
+        rows = self._query(
+            "SELECT strokes_json FROM route "
+            "WHERE cell_id = ? AND layer_index = ?",
+            (cell.cell_id, layer_index),
+        )
+        return str(rows[0][0]) if rows else None
+
+    def _query(
+        self, sql: str, values: Sequence[object] = ()
+    ) -> list[tuple[Any, ...]]:
+        try:
+            return self._connection.execute(sql, values).fetchall()
+        except sqlite3.Error as error:
+            raise PlotError(
+                f"{self.database}: not a whole results database: {error}"
+            ) from error
+
+    def _check_schema(self) -> None:
+        rows = self._query(
+            "SELECT value FROM meta WHERE key = 'schema_version'"
+        )
+        version = str(rows[0][0]) if rows else "missing"
+        if version != SCHEMA_VERSION:
+            raise PlotError(
+                f"{self.database}: schema version {version}, but these plots "
+                f"read version {SCHEMA_VERSION}; plot it with the routebench "
+                "that wrote it"
+            )
+
+    def _read_metrics(self) -> tuple[Metric, ...]:
+        rows = self._query(
+            "SELECT name, label, unit, better, total, meaning FROM metric "
+            "ORDER BY position"
+        )
+        return tuple(Metric(*map(str, row)) for row in rows)
+
+    def _read_items(self, table: str, columns: str) -> tuple[Item, ...]:
+        """The rows of a table that a cell of the last run refers to."""
+        rows = self._query(
+            f"SELECT {table}_id, {columns} FROM {table} WHERE {table}_id IN "
+            f"(SELECT {table}_id FROM current_cell) ORDER BY {table}_id"
+        )
+        labels = distinct_labels([(str(r[1]), str(r[2])) for r in rows])
+        return tuple(Item(int(r[0]), text) for r, text in zip(rows, labels))
+
+    def _read_experiment(self) -> str:
+        rows = self._query("SELECT value FROM meta WHERE key = 'experiment'")
+        return printable(str(rows[0][0])) if rows else ""
+
+    def _read_slots(self) -> tuple[dict[tuple[int, int, int], Slot], int]:
+        """The slots, and how many cells of earlier runs are not in them."""
+        rows = self._query(
+            "SELECT setting_id, model_id, contender_id, cell_id, seed, "
+            "outcome, reason FROM current_cell ORDER BY seed, cell_id"
+        )
+        if not rows:
+            raise PlotError(
+                f"{self.database}: no cells yet; let 'routebench run' finish "
+                "at least one"
+            )
+        groups: dict[tuple[int, int, int], list[Cell]] = defaultdict(list)
+        for row in rows:
+            cell_id, seed, outcome, reason = row[3:]
+            groups[row[0], row[1], row[2]].append(
+                Cell(int(cell_id), seed % 2**64, str(outcome), str(reason))
+            )
+        slots = {key: Slot(tuple(cells)) for key, cells in groups.items()}
+        total = self._query("SELECT count(*) FROM cell")[0][0]
+        return slots, total - len(rows)
+
+    def _read_scores(self) -> dict[tuple[int, str], float]:
+        rows = self._query("SELECT cell_id, metric, value FROM cell_score")
+        scores = {}
+        for cell_id, metric, value in rows:
+            number = _number(value)
+            if number is not None:
+                scores[cell_id, metric] = number
+        return scores
+
+    def _read_samples(self) -> dict[tuple[int, str], list[float]]:
+        columns = ", ".join(TIMED_METRICS)
+        rows = self._query(
+            f"SELECT cell_id, {columns} FROM timing_sample "
+            "ORDER BY cell_id, repetition"
+        )
+        samples: dict[tuple[int, str], list[float]] = defaultdict(list)
+        for cell_id, *values in rows:
+            for metric, value in zip(TIMED_METRICS, values):
+                number = _number(value)
+                if number is not None:
+                    samples[cell_id, metric].append(number)
+        return samples
+
+    def _read_tasks(self) -> dict[int, dict[str, Any]]:
+        tasks = {}
+        for setting_id, text in self._query(
+            "SELECT setting_id, task_json FROM setting"
+        ):
+            try:
+                task = json.loads(text)
+            except (TypeError, ValueError) as error:
+                raise PlotError(
+                    f"{self.database}: task of setting {setting_id} is not "
+                    f"JSON: {error}"
+                ) from error
+            tasks[setting_id] = task if isinstance(task, dict) else {}
+        return tasks
+
+
+def _open(database: Path) -> sqlite3.Connection:
+    """A private copy: a run that goes on writing is never kept waiting."""
+    address = f"file:{quote(str(database.resolve()))}?mode=rw"
+    try:
+        # Opened for writing, because only then an interrupted write of a
+        # run that was killed can be undone; nothing else is written.
+        source = sqlite3.connect(address, uri=True)
+        try:
+            source.execute("PRAGMA query_only = ON")
+            copy = sqlite3.connect("")
+            source.backup(copy)
+        finally:
+            source.close()
+    except sqlite3.Error as error:
+        raise PlotError(
+            f"{database}: cannot be read as a results database: {error}"
+        ) from error
+    copy.text_factory = lambda text: text.decode(errors="replace")
+    return copy
+
+
+def _identifier(name: str) -> str:
+    """A column's name as SQL wants it."""
+    return '"' + name.replace('"', '""') + '"'
+
+
+def _number(value: object) -> float | None:
+    """A finite number, or None for whatever else a column may hold."""
+    if isinstance(value, str):
+        try:
+            value = float(value)
+        except ValueError:
+            return None
+    if isinstance(value, (int, float)) and math.isfinite(value):
+        return float(value)
+    return None
+
+
+def _or_nan(value: object) -> float:
+    number = _number(value)
+    return math.nan if number is None else number

@@ -1,0 +1,135 @@
+#include "judge/coverage.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "judge/bit_plane.hpp"
+#include "judge/capsule.hpp"
+#include "judge/sample_grid.hpp"
+#include "routebench/geometry/region.hpp"
+#include "routebench/geometry/vec.hpp"
+
+namespace routebench::judging {
+namespace {
+
+using Word = BitPlane::Word;
+
+/// Adds all points within radius_mm of segment ab.
+void add_capsule(BitPlane& plane, Point2 a, Point2 b, double radius_mm) {
+  const SampleGrid& grid = plane.grid();
+  visit_capsule_rows(
+      grid.to_steps(a), grid.to_steps(b), grid.to_steps(radius_mm), grid.rows(),
+      [&plane](std::size_t row, Span bead, Span) { plane.add(row, bead.left, bead.right); });
+}
+
+/// Adds the passes of a run; see Coverage::doubled. A pass begins in a segment where its bead
+/// reaches a sample that was out of reach where the segment began: the bead less the disc round its
+/// first point. Only the first segment of an open run begins passes in that disc too. (In a loop
+/// the last segment ends there.)
+void add_passes(BitPlane& once, BitPlane& twice, const Run& run, const Task& task) {
+  const SampleGrid& grid = once.grid();
+  for (std::size_t i = 0; i < run.widths_mm.size(); ++i) {
+    if (run.widths_mm[i] <= 0) continue;
+    const bool goes_on = i > 0 || run.loop;
+    const auto add = [&](std::size_t row, Span bead, Span start) {
+      if (!goes_on || start.empty()) {
+        once.add_counting(row, bead.left, bead.right, twice);
+        return;
+      }
+      // A sample on the rim of the disc belongs to it.
+      once.add_counting(row, bead.left, std::ceil(start.left) - 1, twice);
+      once.add_counting(row, std::floor(start.right) + 1, bead.right, twice);
+    };
+    visit_capsule_rows(grid.to_steps(run.points[i]), grid.to_steps(run.points[i + 1]),
+                       grid.to_steps(task.mean_width_mm(run.widths_mm[i]) / 2), grid.rows(), add);
+  }
+}
+
+/// Adds all points within radius_mm of the beads' centre lines, which may be moved by up to
+/// slack_mm: steps of a curve that are shorter are taken together.
+void add_reach(BitPlane& plane, const std::vector<Run>& runs, double radius_mm, double slack_mm) {
+  for (const Run& run : runs) {
+    Point2 from = run.points.front();
+    for (std::size_t i = 0; i < run.widths_mm.size(); ++i) {
+      const Point2 to = run.points[i + 1];
+      if (run.widths_mm[i] <= 0) {
+        from = to;
+        continue;
+      }
+      const bool last = i + 1 == run.widths_mm.size() || run.widths_mm[i + 1] <= 0;
+      if (!last && distance(from, to) < slack_mm) continue;
+      add_capsule(plane, from, to, radius_mm);
+      from = to;
+    }
+  }
+}
+
+/// Share of the sparse part that lies within one line distance of a centre line. The reach is many
+/// line widths wide, and so are the steps in which it is sampled.
+double sparse_share_reached(const Polygons& sparse, const std::vector<Run>& runs,
+                            const Task& task) {
+  constexpr double kSamplesAcrossReach = 16;
+  constexpr double kSamplesAcrossLayer = 128;
+  constexpr double kMaxSamples = 4194304;  // 2^22
+  const double reach = task.spacing_mm() / task.density;
+  const Box2 box = bounding_box(sparse);
+  const double across = std::max(box.upper.x - box.lower.x, box.upper.y - box.lower.y);
+  const double pitch = std::min(reach / kSamplesAcrossReach, across / kSamplesAcrossLayer);
+  const SampleGrid grid(sparse, 0, pitch, kMaxSamples);
+  const BitPlane region(grid, sparse);
+  const std::size_t samples = region.count();
+  if (samples == 0) return 1;
+  BitPlane reached(grid);
+  add_reach(reached, runs, reach, grid.pitch_mm() / 2);
+  const std::size_t hit = region.count([](Word a, Word b) { return a & b; }, reached);
+  return static_cast<double>(hit) / static_cast<double>(samples);
+}
+
+/// Adds what lies within radius_mm of the polygons' boundary.
+void grow(BitPlane& plane, const Polygons& polygons, double radius_mm) {
+  const auto add_ring = [&](const Ring& ring) {
+    for (std::size_t i = 0; i < ring.size(); ++i)
+      add_capsule(plane, ring[i == 0 ? ring.size() - 1 : i - 1], ring[i], radius_mm);
+  };
+  for (const Polygon& polygon : polygons) {
+    add_ring(polygon.outer);
+    for (const Ring& hole : polygon.holes) add_ring(hole);
+  }
+}
+
+}  // namespace
+
+Coverage measure_coverage(const LayerSamples& samples, std::size_t outline_samples,
+                          const Demand& demand, const std::vector<Run>& runs, const Task& task) {
+  const SampleGrid& grid = samples.grid;
+  BitPlane beads(grid);
+  double beyond_mm2 = 0;
+  visit_beads(runs, [&](Point2 a, Point2 b, double width_mm) {
+    add_capsule(beads, a, b, width_mm / 2);
+    const SampleGrid::Shares over = grid.shares_over(a, b);
+    beyond_mm2 += (1 - (over.leave - over.enter)) * distance(a, b) * width_mm;
+  });
+  BitPlane once(grid);
+  BitPlane twice(grid);
+  for (const Run& run : runs) add_passes(once, twice, run, task);
+  BitPlane within = samples.outline;
+  grow(within, demand.outline, task.line_width_mm / 2);
+
+  const auto share = [outline_samples](double part) {
+    return part / static_cast<double>(outline_samples);
+  };
+  const std::size_t under_beads = samples.outline.count(
+      [](Word p, Word s, Word b) { return p & ~s & b; }, samples.sparse, beads);
+  const std::size_t sparse =
+      samples.outline.count([](Word p, Word s) { return p & s; }, samples.sparse);
+  const double sparse_reached =
+      sparse > 0 && task.density > 0 ? sparse_share_reached(demand.sparse, runs, task) : 1;
+  const std::size_t outside = beads.count([](Word b, Word in) { return b & ~in; }, within);
+  return {.covered = share(static_cast<double>(under_beads) +
+                           static_cast<double>(sparse) * sparse_reached),
+          .doubled = share(static_cast<double>(twice.count())),
+          .spilled = share(static_cast<double>(outside) + beyond_mm2 / grid.sample_mm2())};
+}
+
+}  // namespace routebench::judging

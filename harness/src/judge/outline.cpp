@@ -1,0 +1,129 @@
+#include "judge/outline.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include "judge/capsule.hpp"
+#include "routebench/geometry/region.hpp"
+#include "routebench/geometry/vec.hpp"
+
+namespace routebench::judging {
+namespace {
+
+constexpr double kMaxPoints = 4194304;  // 2^22
+constexpr double kMaxCells = 1048576;   // 2^20
+
+/// A point of the boundary that stands for a piece of it.
+struct Sample {
+  Point2 point;
+  double length_mm = 0;
+  bool reached = false;
+};
+
+std::vector<Sample> sample_boundary(const Polygons& polygons, double pitch_mm) {
+  std::vector<Sample> samples;
+  const auto add_ring = [&](const Ring& ring) {
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      const Point2 a = ring[i];
+      const Point2 b = ring[i + 1 == ring.size() ? 0 : i + 1];
+      const double length = distance(a, b);
+      const double pieces = std::ceil(length / pitch_mm);
+      for (double k = 0; k < pieces; k += 1)
+        samples.push_back({lerp(a, b, (k + 0.5) / pieces), length / pieces, false});
+    }
+  };
+  for (const Polygon& polygon : polygons) {
+    add_ring(polygon.outer);
+    for (const Ring& hole : polygon.holes) add_ring(hole);
+  }
+  return samples;
+}
+
+/// Samples by cells of a grid along the axes, so that a bead looks at those near it only.
+class SampleCells {
+ public:
+  SampleCells(std::vector<Sample> samples, const Box2& box, double reach_mm)
+      : lower_(box.lower), reach_mm_(reach_mm) {
+    const Point2 size = box.upper - box.lower;
+    cell_mm_ = std::max({2 * reach_mm, std::sqrt(size.x * size.y / kMaxCells),
+                         std::max(size.x, size.y) / kMaxCells});
+    columns_ = static_cast<std::size_t>(size.x / cell_mm_) + 1;
+    rows_ = static_cast<std::size_t>(size.y / cell_mm_) + 1;
+    begin_.assign(columns_ * rows_ + 1, 0);
+    for (const Sample& sample : samples) ++begin_[cell_of(sample.point) + 1];
+    for (std::size_t i = 1; i < begin_.size(); ++i) begin_[i] += begin_[i - 1];
+    samples_.resize(samples.size());
+    std::vector<std::uint32_t> next(begin_.begin(), begin_.end() - 1);
+    for (const Sample& sample : samples) samples_[next[cell_of(sample.point)]++] = sample;
+  }
+
+  void reach_from(Point2 a, Point2 b) {
+    // Any point within reach lies in a cell whose centre is less than half a diagonal further away.
+    constexpr double kHalfDiagonal = 0.7072;
+    visit_capsule_rows(to_cells(a), to_cells(b), reach_mm_ / cell_mm_ + kHalfDiagonal, rows_,
+                       [&](std::size_t row, Span span, Span) { reach_in(row, span, a, b); });
+  }
+
+  [[nodiscard]] double share_reached() const {
+    double reached = 0;
+    double all = 0;
+    for (const Sample& sample : samples_) {
+      all += sample.length_mm;
+      if (sample.reached) reached += sample.length_mm;
+    }
+    return reached / all;
+  }
+
+ private:
+  /// Cell (i, j) has its centre at (i, j).
+  [[nodiscard]] Point2 to_cells(Point2 p) const {
+    return (1 / cell_mm_) * (p - lower_) - Point2{0.5, 0.5};
+  }
+
+  [[nodiscard]] std::size_t cell_of(Point2 p) const {
+    const auto place = [this](double mm, std::size_t end) {
+      return std::min(static_cast<std::size_t>(std::max(mm, 0.0) / cell_mm_), end - 1);
+    };
+    return place(p.y - lower_.y, rows_) * columns_ + place(p.x - lower_.x, columns_);
+  }
+
+  void reach_in(std::size_t row, Span span, Point2 a, Point2 b) {
+    const double first = std::max(std::ceil(span.left), 0.0);
+    const double last = std::min(std::floor(span.right), static_cast<double>(columns_) - 1);
+    if (first > last) return;
+    const std::size_t begin = begin_[row * columns_ + static_cast<std::size_t>(first)];
+    const std::size_t end = begin_[row * columns_ + static_cast<std::size_t>(last) + 1];
+    for (std::size_t i = begin; i < end; ++i) {
+      Sample& sample = samples_[i];
+      if (!sample.reached &&
+          squared_distance(sample.point, nearest_on_segment(sample.point, a, b)) <=
+              reach_mm_ * reach_mm_)
+        sample.reached = true;
+    }
+  }
+
+  Point2 lower_;
+  double reach_mm_;
+  double cell_mm_ = 1;
+  std::size_t columns_ = 0;
+  std::size_t rows_ = 0;
+  std::vector<Sample> samples_;       // cell by cell
+  std::vector<std::uint32_t> begin_;  // of cell c: samples_[begin_[c] .. begin_[c + 1])
+};
+
+}  // namespace
+
+std::optional<double> outline_covered(const Polygons& polygons, const std::vector<Run>& runs,
+                                      double reach_mm) {
+  const double pitch =
+      std::max(std::min(0.1, reach_mm / 4), perimeter_mm(polygons) / (kMaxPoints / 2));
+  std::vector<Sample> samples = sample_boundary(polygons, pitch);
+  if (samples.empty()) return std::nullopt;
+  SampleCells cells(std::move(samples), bounding_box(polygons), reach_mm);
+  visit_beads(runs, [&](Point2 a, Point2 b, double) { cells.reach_from(a, b); });
+  return cells.share_reached();
+}
+
+}  // namespace routebench::judging

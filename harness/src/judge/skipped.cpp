@@ -1,0 +1,155 @@
+#include "judge/skipped.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+
+#include "judge/bit_plane.hpp"
+#include "judge/cell_field.hpp"
+#include "judge/sample_grid.hpp"
+#include "routebench/geometry/vec.hpp"
+
+namespace routebench::judging {
+namespace {
+
+constexpr double kLeastShare = 0.7;
+constexpr double kReachDistances = 2.5;  // of the average, in line distances
+
+/// What one part of a layer demands and gets, in cells of equally many samples.
+class PartLedger {
+ public:
+  PartLedger(const BitPlane& part, double line_distance_mm)
+      : part_(part),
+        grid_(part.grid()),
+        line_distance_mm_(line_distance_mm),
+        cell_steps_(cell_steps(grid_.to_steps(line_distance_mm))),
+        demanded_(cells(grid_.columns()), cells(grid_.rows())),
+        laid_(cells(grid_.columns()), cells(grid_.rows())) {
+    count_samples();
+  }
+
+  /// A bead `strength` times as strong as the task's.
+  void lay(Point2 a, Point2 b, double strength) {
+    visit_pieces(a, b, [&](std::size_t column, std::size_t row, double length_mm) {
+      if (part_.test(column, row)) add(column, row, length_mm * strength);
+    });
+  }
+
+  /// Boundary of the part: half a line.
+  void lay_boundary(const Ring& ring) {
+    for (std::size_t i = 0; i < ring.size(); ++i)
+      visit_pieces(ring[i], ring[i + 1 == ring.size() ? 0 : i + 1],
+                   [&](std::size_t column, std::size_t row, double length_mm) {
+                     add(column, row, length_mm / 2);
+                   });
+  }
+
+  /// To be asked once, when all is laid.
+  [[nodiscard]] double skipped_area_mm2() {
+    const std::vector<float> own = demanded_.values();
+    const auto cell_mm = grid_.pitch_mm() * static_cast<double>(cell_steps_);
+    const auto reach = static_cast<std::size_t>(
+        std::max(1.0, std::round(kReachDistances * line_distance_mm_ / cell_mm)));
+    demanded_.average(reach);
+    laid_.average(reach);
+    double skipped = 0;
+    for (std::size_t i = 0; i < own.size(); ++i)
+      if (own[i] > 0 && static_cast<double>(laid_.values()[i]) <
+                            kLeastShare * static_cast<double>(demanded_.values()[i]))
+        skipped += static_cast<double>(own[i]);
+    return skipped * grid_.sample_mm2();
+  }
+
+ private:
+  /// Half a line distance or less, as a power of two, so that no cell lies in two words.
+  static std::size_t cell_steps(double line_distance_steps) {
+    std::size_t steps = 1;
+    while (2 * steps <= BitPlane::kWordBits &&
+           static_cast<double>(2 * steps) <= line_distance_steps / 2 * 1.05)
+      steps *= 2;
+    return steps;
+  }
+
+  [[nodiscard]] std::size_t cells(std::size_t steps) const {
+    return (steps + cell_steps_ - 1) / cell_steps_;
+  }
+
+  void count_samples() {
+    // Two to four rows a cell, each standing for several, are enough: they are averaged over
+    // several cells.
+    const std::size_t stride = std::max<std::size_t>(1, cell_steps_ / 2);
+    const BitPlane::Word mask = ~BitPlane::Word{0} >> (BitPlane::kWordBits - cell_steps_);
+    const std::size_t cells_a_word = BitPlane::kWordBits / cell_steps_;
+    for (std::size_t row = stride / 2; row < grid_.rows(); row += stride)
+      for (std::size_t i = 0; i < part_.row_words(); ++i) {
+        BitPlane::Word word = part_.words()[row * part_.row_words() + i];
+        for (std::size_t cell = i * cells_a_word; word != 0; ++cell) {
+          if (const int set = std::popcount(word & mask); set > 0)
+            demanded_.at(cell, row / cell_steps_) +=
+                static_cast<float>(static_cast<std::size_t>(set) * stride);
+          word = cell_steps_ == BitPlane::kWordBits ? 0 : word >> cell_steps_;
+        }
+      }
+  }
+
+  /// Calls visit(nearest sample's column, row, length_mm) for pieces of segment ab, each at most
+  /// half a cell long; only for those over the grid.
+  template <typename Visit>
+  void visit_pieces(Point2 a, Point2 b, Visit&& visit) const {
+    const SampleGrid::Shares shares = grid_.shares_over(a, b);
+    const double length_mm = distance(a, b) * (shares.leave - shares.enter);
+    const Point2 from = grid_.to_steps(lerp(a, b, shares.enter));
+    const Point2 run = grid_.to_steps(lerp(a, b, shares.leave)) - from;
+    const double count =
+        std::ceil(grid_.to_steps(length_mm) * 2 / static_cast<double>(cell_steps_));
+    const auto nearest = [](double steps, std::size_t end) {
+      return static_cast<std::size_t>(
+          std::clamp(std::floor(steps + 0.5), 0.0, static_cast<double>(end - 1)));
+    };
+    for (double i = 0; i < count; i += 1) {
+      const Point2 middle = from + ((i + 0.5) / count) * run;
+      visit(nearest(middle.x, grid_.columns()), nearest(middle.y, grid_.rows()), length_mm / count);
+    }
+  }
+
+  /// Every mm of line fills its distance's width.
+  void add(std::size_t column, std::size_t row, double length_mm) {
+    laid_.at(column / cell_steps_, row / cell_steps_) +=
+        static_cast<float>(length_mm * line_distance_mm_ / grid_.sample_mm2());
+  }
+
+  const BitPlane& part_;
+  const SampleGrid& grid_;
+  double line_distance_mm_;
+  std::size_t cell_steps_;
+  CellField demanded_;  // in samples
+  CellField laid_;
+};
+
+double skipped_of_part_mm2(const BitPlane& samples, const Polygons& part, double line_distance_mm,
+                           const std::vector<Run>& runs, const Task& task) {
+  if (part.empty()) return 0;
+  PartLedger ledger(samples, line_distance_mm);
+  visit_beads(runs, [&](Point2 a, Point2 b, double width_mm) {
+    ledger.lay(a, b, task.mean_width_mm(width_mm) / task.spacing_mm());
+  });
+  for (const Polygon& polygon : part) {
+    ledger.lay_boundary(polygon.outer);
+    for (const Ring& hole : polygon.holes) ledger.lay_boundary(hole);
+  }
+  return ledger.skipped_area_mm2();
+}
+
+}  // namespace
+
+double skipped_area_mm2(const LayerSamples& samples, const Demand& demand,
+                        const std::vector<Run>& runs, const Task& task) {
+  double skipped = skipped_of_part_mm2(samples.dense, demand.dense, task.spacing_mm(), runs, task);
+  if (task.density > 0)
+    skipped += skipped_of_part_mm2(samples.sparse, demand.sparse, task.spacing_mm() / task.density,
+                                   runs, task);
+  return skipped;
+}
+
+}  // namespace routebench::judging

@@ -1,0 +1,63 @@
+"""Nothing is cut off, however long names are and however many there are."""
+
+from __future__ import annotations
+
+import unittest
+from collections.abc import Sequence
+from pathlib import Path
+
+from routebench_plots.figures import chosen_metrics, figures
+from support import LONG_MODEL, LONG_NAME, UNBROKEN_NAME, PlotTestCase
+from synthetic import fill
+
+FAILURES = {
+    (0, 0): ("off_task", "covered 0.91 < 0.95; " * 6),
+    (1, 0): ("out_of_memory", "more than 4096 MB"),
+}
+
+
+class LayoutTest(PlotTestCase):
+    """All figures of an experiment, drawn and measured."""
+
+    def check(
+        self,
+        models: Sequence[str],
+        contenders: Sequence[str],
+        settings: Sequence[str] = ("",),
+    ) -> None:
+        """Draws everything but some metrics that look like others."""
+        path: Path = fill(
+            self.folder / "results.sqlite",
+            models,
+            contenders,
+            settings,
+            FAILURES,
+            layers=9,
+        )
+        results = self.open(path)
+        metrics = chosen_metrics(results, ["travel_mm", "plan_cpu_ns"])
+        for figure in figures(results, metrics):
+            with self.subTest(figure.stem):
+                self.assert_laid_out(figure.draw())
+
+    def test_one_contender_one_model(self) -> None:
+        self.check(["m"], ["c"])
+
+    def test_twelve_contenders_with_long_names(self) -> None:
+        names = [LONG_NAME, UNBROKEN_NAME, "_hidden", "cost in $ and $"]
+        names += [f"{LONG_NAME} {n}" for n in range(4)]
+        names += [f"short {n}" for n in range(4)]
+        self.check([LONG_MODEL, "m" * 120], names)
+
+    def test_long_setting(self) -> None:
+        self.check(["m"], ["c"], ["density=0.2, retract_over_mm=1.5, " * 5])
+
+    def test_one_contender_with_a_long_name(self) -> None:
+        self.check(["m", "n", LONG_MODEL, "o"], [LONG_NAME])
+
+    def test_names_of_other_scripts(self) -> None:
+        self.check(["модель", "模型"], ["größe µ", "naïve → élève", "\t\n"])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,171 @@
+#include "judge/print_time.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstddef>
+#include <random>
+#include <vector>
+
+#include "routebench/geometry/vec.hpp"
+
+namespace routebench::judging {
+namespace {
+
+/// Round figures: 100 mm/s and 200 mm/s, 1000 mm/s2.
+Printer round_printer() {
+  Printer printer;
+  printer.extrude_mm_s = 100;
+  printer.travel_mm_s = 200;
+  printer.accel_mm_s2 = 1000;
+  printer.junction_mm = 0.01;
+  printer.retract_mm = 0.8;
+  printer.retract_mm_s = 40;
+  printer.lift_mm = 0;
+  return printer;
+}
+
+std::vector<Move> extruding(const std::vector<Point2>& points) {
+  std::vector<Move> moves;
+  for (std::size_t i = 1; i < points.size(); ++i)
+    moves.push_back({points[i - 1], points[i], true, false});
+  return moves;
+}
+
+double extrude_s(const std::vector<Point2>& points, const Printer& printer = round_printer()) {
+  const PrintTime time = print_time(extruding(points), printer);
+  EXPECT_EQ(time.travel_s, 0);
+  EXPECT_EQ(time.retract_s, 0);
+  return time.extrude_s;
+}
+
+TEST(PrintTime, ALongMoveIsATrapezoid) {
+  // 0.1 s and 5 mm up to 100 mm/s, the same down, 90 mm between at 100 mm/s.
+  EXPECT_NEAR(extrude_s({{0, 0}, {100, 0}}), 0.1 + 0.9 + 0.1, 1e-12);
+}
+
+TEST(PrintTime, AShortMoveIsATriangle) {
+  // 2 mm up, 2 mm down: each sqrt(2 * 2 / 1000) s.
+  EXPECT_NEAR(extrude_s({{1, 1}, {1, 5}}), 2 * std::sqrt(0.004), 1e-12);
+}
+
+TEST(PrintTime, StraightOnIsOneMove) {
+  EXPECT_NEAR(extrude_s({{0, 0}, {30, 40}, {60, 80}}), extrude_s({{0, 0}, {60, 80}}), 1e-9);
+  // In many pieces, too short to reach the speed one by one.
+  std::vector<Point2> points;
+  for (int i = 0; i <= 1000; ++i) points.push_back({0.1 * i, 0});
+  EXPECT_NEAR(extrude_s(points), 1.1, 1e-9);
+}
+
+TEST(PrintTime, AReversalIsAStop) {
+  EXPECT_NEAR(extrude_s({{0, 0}, {100, 0}, {0, 0}}), 2 * 1.1, 1e-12);
+}
+
+TEST(PrintTime, ARightAngleIsTakenAtTheJunctionSpeed) {
+  // t = 90 degrees: sin(t/2) = sqrt(1/2), v_j^2 = 1000 * 0.01 * 2.41421... = 24.1421...
+  const double vj2 = 10 * std::sqrt(0.5) / (1 - std::sqrt(0.5));
+  const double vj = std::sqrt(vj2);
+  // Each leg: ramps between 0 and 100, and between 100 and vj; the rest at 100.
+  const double ramps_s = 0.1 + (100 - vj) / 1000;
+  const double ramps_mm = 5 + (10000 - vj2) / 2000;
+  EXPECT_NEAR(extrude_s({{0, 0}, {100, 0}, {100, 100}}), 2 * (ramps_s + (100 - ramps_mm) / 100),
+              1e-12);
+}
+
+TEST(PrintTime, WhatComesLaterIsSeenInTime) {
+  // A move of 0.1 mm before a reversal: the long one before it must already be slow enough to stop.
+  const double v2 = 2 * 1000 * 0.1;  // at the joint, straight on: stops within 0.1 mm
+  const double first = 0.1 + (100 - std::sqrt(v2)) / 1000 + (100 - 5 - (10000 - v2) / 2000) / 100;
+  const double second = std::sqrt(v2) / 1000;
+  const double back = 2 * std::sqrt(0.1 / 1000);
+  EXPECT_NEAR(extrude_s({{0, 0}, {100, 0}, {100.1, 0}, {100, 0}}), first + second + back, 1e-9);
+}
+
+TEST(PrintTime, MovesOfDifferentSpeedBlendAtTheSlowerOne) {
+  // 100 mm extruding at 100 mm/s, straight on 100 mm travelling at 200 mm/s.
+  std::vector<Move> moves = extruding({{0, 0}, {100, 0}});
+  moves.push_back({{100, 0}, {200, 0}, false, false});
+  const PrintTime time = print_time(moves, round_printer());
+  EXPECT_NEAR(time.extrude_s, 0.1 + 0.95, 1e-12);  // not braked at the end
+  // 100 to 200 mm/s: 0.1 s, 15 mm; 200 to 0: 0.2 s, 20 mm; 65 mm at 200 mm/s.
+  EXPECT_NEAR(time.travel_s, 0.1 + 0.2 + 65.0 / 200, 1e-12);
+}
+
+TEST(PrintTime, ARetractionIsAStopOnBothSides) {
+  Printer printer = round_printer();
+  printer.lift_mm = 0.4;
+  std::vector<Move> moves = extruding({{0, 0}, {100, 0}});
+  moves.push_back({{100, 0}, {200, 0}, false, true});
+  moves.push_back({{200, 0}, {300, 0}, true, false});
+  const PrintTime time = print_time(moves, printer);
+  EXPECT_NEAR(time.extrude_s, 2 * 1.1, 1e-12);
+  EXPECT_NEAR(time.travel_s, 0.2 + 60.0 / 200 + 0.2, 1e-12);
+  EXPECT_NEAR(time.retract_s, 2 * 0.8 / 40 + 2 * 0.4 / 200, 1e-12);
+}
+
+TEST(PrintTime, NothingTakesNoTime) {
+  for (const std::vector<Move>& moves :
+       {std::vector<Move>{}, extruding({{3, 3}, {3, 3}}), extruding({{3, 3}})}) {
+    const PrintTime time = print_time(moves, round_printer());
+    EXPECT_EQ(time.extrude_s + time.travel_s + time.retract_s, 0);
+  }
+  // A retraction on the spot is paid for and stops what would run straight on.
+  std::vector<Move> moves = extruding({{0, 0}, {100, 0}});
+  moves.push_back({{100, 0}, {100, 0}, false, true});
+  moves.push_back({{100, 0}, {200, 0}, true, false});
+  const PrintTime time = print_time(moves, round_printer());
+  EXPECT_NEAR(time.retract_s, 2 * 0.8 / 40, 1e-12);
+  EXPECT_NEAR(time.extrude_s, 2 * 1.1, 1e-12);
+}
+
+/// Time by small steps along the path: the fastest speed that all laws allow at each place.
+double slow_oracle_s(const std::vector<Point2>& points, const Printer& printer, double step_mm) {
+  struct Place {
+    double allowed2;
+  };
+  std::vector<Place> places{{0}};
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    const double length = distance(points[i - 1], points[i]);
+    const int steps = static_cast<int>(std::round(length / step_mm));
+    EXPECT_NEAR(length, steps * step_mm, 1e-9) << "the oracle wants whole steps";
+    const double top2 = printer.extrude_mm_s * printer.extrude_mm_s;
+    for (int k = 1; k < steps; ++k) places.push_back({top2});
+    if (i + 1 == points.size()) break;
+    const Point2 back = points[i - 1] - points[i];
+    const Point2 on = points[i + 1] - points[i];
+    const double t = std::abs(std::atan2(cross(back, on), dot(back, on)));
+    const double s = std::sin(t / 2);
+    places.push_back(
+        {s >= 1 ? top2 : std::min(top2, printer.accel_mm_s2 * printer.junction_mm * s / (1 - s))});
+  }
+  places.push_back({0});
+  for (std::size_t i = 1; i < places.size(); ++i)
+    places[i].allowed2 =
+        std::min(places[i].allowed2, places[i - 1].allowed2 + 2 * printer.accel_mm_s2 * step_mm);
+  for (std::size_t i = places.size() - 1; i-- > 0;)
+    places[i].allowed2 =
+        std::min(places[i].allowed2, places[i + 1].allowed2 + 2 * printer.accel_mm_s2 * step_mm);
+  double time = 0;
+  for (std::size_t i = 1; i < places.size(); ++i)
+    time += 2 * step_mm / (std::sqrt(places[i - 1].allowed2) + std::sqrt(places[i].allowed2));
+  return time;
+}
+
+TEST(PrintTime, AgreesWithSmallStepsAlongThePath) {
+  std::mt19937_64 random(7);
+  for (int round = 0; round < 20; ++round) {
+    // Whole steps along the axes and along 3-4-5 triangles.
+    std::vector<Point2> points{{0, 0}};
+    for (int i = 0; i < 30; ++i) {
+      const double size = 0.1 * static_cast<double>(1 + random() % 40);
+      constexpr Point2 kWays[] = {{5, 0}, {0, 5}, {-5, 0}, {3, 4}, {-3, 4}, {4, -3}, {3, -4}};
+      points.push_back(points.back() + (size / 5) * kWays[random() % std::size(kWays)]);
+    }
+    const double exact = extrude_s(points);
+    // The oracle's steps round off peaks that lie between two places.
+    EXPECT_NEAR(slow_oracle_s(points, round_printer(), 0.001), exact, 2e-3 * exact);
+  }
+}
+
+}  // namespace
+}  // namespace routebench::judging
