@@ -46,15 +46,17 @@ class Figure:
 def chosen_metrics(
     results: Results, names: Sequence[str] | None
 ) -> list[Metric]:
-    """The metrics with these names; those of interest without any.
+    """The metrics with these names.
 
-    The name `all` means every metric of the database.
+    Without names, those of interest that have any value. The name `all`
+    means every metric of the database.
     """
     if names is None:
         return [
             metric
             for name in METRICS_OF_INTEREST
             if (metric := results.metric(name)) is not None
+            and results.has_values(metric)
         ]
     if list(names) == ["all"]:
         return list(results.metrics)

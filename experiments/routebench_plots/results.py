@@ -183,6 +183,13 @@ class Results:
             statistics.median(found), min(found), max(found), len(found)
         )
 
+    def has_values(self, metric: Metric) -> bool:
+        """Whether any valid cell has this metric."""
+        return any(
+            self.value(slot, metric) is not None
+            for slot in self._slots.values()
+        )
+
     def task_number(self, setting: Item, key: str) -> float | None:
         """A number that the setting's task has under `key`, if any."""
         return _number(self._tasks[setting.row_id].get(key))

@@ -16,6 +16,7 @@ GAP = 0.14
 """Inches between panels."""
 _PANEL_WIDTHS = (1.3, 4.5)
 _LEAST_PANEL_HEIGHT = 0.5
+_FIRST_HEIGHT, _MORE_HEIGHT = 3.5, 0.5
 _STRAY_SHARE = 0.5
 """How far strokes outside the layer widen the view, of its size."""
 _BORDER_SHARE = 0.03
@@ -76,8 +77,13 @@ def view_of(material: Iterable[Points], strokes: Iterable[Points]) -> View:
 
 
 def grid_for(view: View, titles: Sequence[Sequence[str]]) -> Grid:
-    """The number of columns that gives the largest pictures on a page."""
+    """The number of columns that gives the largest pictures.
+
+    A few pictures get less of the page than many, and so rather stand
+    side by side.
+    """
     least, most = _PANEL_WIDTHS
+    page = min(PAGE_HEIGHT, _FIRST_HEIGHT + _MORE_HEIGHT * len(titles))
     inner = PAGE_WIDTH - 2 * MARGIN
     grids = []
     for columns in range(1, len(titles) + 1):
@@ -94,9 +100,7 @@ def grid_for(view: View, titles: Sequence[Sequence[str]]) -> Grid:
             for title in titles
         )
         rows = -(-len(titles) // columns)
-        room = max(
-            PAGE_HEIGHT / rows - title_height - GAP, _LEAST_PANEL_HEIGHT
-        )
+        room = max(page / rows - title_height - GAP, _LEAST_PANEL_HEIGHT)
         width, height = view.size
         scale = min(panel_width / width, room / height)
         grids.append(

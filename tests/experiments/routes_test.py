@@ -153,7 +153,7 @@ class RoutesTest(PlotTestCase):
         sheet = self.draw()
         low, high = self.panels(sheet)[0].get_xlim()
         self.assertLess(high - low, 40)
-        self.assertIn("1 strokes run out of the picture", note(sheet))
+        self.assertIn("1 stroke partly out of the picture", note(sheet))
 
     def test_flat_and_tall_layers_fit(self) -> None:
         for name in "abc":
