@@ -71,13 +71,14 @@ void check_command(const CLI::App& app, int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"routebench plans routes for 3D printing and judges them."};
+  CLI::App app{"Plan routes for 3D printing and judge them", "routebench"};
   app.set_version_flag("--version", std::string(routebench::kVersion));
   app.require_subcommand(1);
   app.get_formatter()->column_width(32);
-  app.footer(
+  const std::string exit_codes =
       "Exit codes: 0 done, 1 done but not everything is valid, 2 bad usage or input, 3 internal "
-      "error.\nEach command has its own help: routebench plan --help.");
+      "error.";
+  app.footer(exit_codes);  // commands inherit it
   int exit_code = 0;
   routebench::add_run_command(app, exit_code);
   routebench::add_plan_command(app, exit_code);
@@ -86,6 +87,7 @@ int main(int argc, char** argv) {
   routebench::add_plot_command(app, exit_code);
   routebench::add_export_command(app, exit_code);
   routebench::add_doctor_command(app, exit_code);
+  app.footer(exit_codes + "\nEach command has its own help: routebench plan --help.");
   try {
     check_command(app, argc, argv);
     app.parse(argc, argv);

@@ -27,12 +27,19 @@ Setting setting_of(const std::string& option, const std::string& text) {
   return {text.substr(0, equals), text.substr(equals + 1)};
 }
 
-/// "layer_height_mm=0.2, ..." for help.
-std::string keys_of(const std::vector<KeyValue>& table) {
-  std::string text;
-  for (const KeyValue& entry : table)
-    text += (text.empty() ? "" : ", ") + entry.key + "=" + entry.value;
-  return text;
+/// Appends "Keys of --task and their defaults: ..." to a command's footer, in lines that fit.
+void add_keys_to_footer(CLI::App& command, const std::string& option,
+                        const std::vector<KeyValue>& table) {
+  constexpr std::size_t kWidth = 96;
+  std::string text = "Keys of " + option + " with their defaults:";
+  std::string line = " ";
+  for (const KeyValue& entry : table) {
+    const std::string word = " " + entry.key + "=" + entry.value;
+    if (line.size() + word.size() > kWidth) text += "\n" + std::exchange(line, " ");
+    line += word;
+  }
+  const std::string before = command.get_footer();
+  command.footer(before + (before.empty() ? "" : "\n") + text + "\n" + line);
 }
 
 template <typename Number>
@@ -74,28 +81,39 @@ CLI::Option* add_repeated(CLI::App& command, const std::string& name,
   return command.add_option(name, values, help)->type_name(type)->allow_extra_args(false);
 }
 
+void add_model_argument(CLI::App& command, std::string& model) {
+  command
+      .add_option("MODEL", model,
+                  "A mesh (STL, OBJ, OFF, PLY, 3MF), shape:NAME?key=value, cgal:PATH, or a .wkt "
+                  "file of layers")
+      ->type_name("")
+      ->required();
+}
+
 void add_task_option(CLI::App& command, std::vector<std::string>& settings) {
-  add_repeated(command, "--task", settings, "KEY=VALUE",
-               "what has to be deposited; may be given several times. Keys with their defaults: " +
-                   keys_of(task_values(Task{})));
+  add_repeated(command, "--task", settings, "KEY=VALUE", "What has to be deposited (keys below)");
+  add_keys_to_footer(command, "--task", task_values(Task{}));
 }
 
 void add_printer_option(CLI::App& command, std::vector<std::string>& settings) {
-  add_repeated(command, "--printer", settings, "KEY=VALUE",
-               "how the printer moves; may be given several times. Keys with their defaults: " +
-                   keys_of(printer_values(Printer{})));
+  add_repeated(command, "--printer", settings, "KEY=VALUE", "How the printer moves (keys below)");
+  add_keys_to_footer(command, "--printer", printer_values(Printer{}));
 }
 
 void add_plugin_option(CLI::App& command, std::vector<std::string>& files) {
-  add_repeated(command, "--plugin", files, "FILE.so",
-               "load planners from a shared library; may be given several times");
+  add_repeated(command, "--plugin", files, "FILE.so", "Load planners from a shared library");
 }
 
 void add_jobs_option(CLI::App& command, int& jobs, const std::string& remark) {
-  command.add_option("--jobs,-j", jobs, "threads to work with; 0: one a core" + remark)
+  command.add_option("--jobs,-j", jobs, "Threads to work with; 0: one a core" + remark)
       ->type_name("N")
-      ->check(CLI::Range(0, 4096))
+      ->check(CLI::Range(0, 4096).description(""))
       ->capture_default_str();
+}
+
+void add_repair_flag(CLI::App& command, bool& repair) {
+  command.add_flag("--repair", repair,
+                   "Mend what would be refused, and mark the layers where that was needed");
 }
 
 Task task_of(const std::vector<std::string>& settings) {

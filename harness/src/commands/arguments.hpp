@@ -19,11 +19,15 @@ CLI::Option* add_repeated(CLI::App& command, const std::string& name,
                           std::vector<std::string>& values, const std::string& type,
                           const std::string& help);
 
-/// The options by which tasks and printers are set, and their keys in the help.
+/// The model that a command works on.
+void add_model_argument(CLI::App& command, std::string& model);
+
+/// The options by which tasks and printers are set. Their keys stand at the end of the help.
 void add_task_option(CLI::App& command, std::vector<std::string>& settings);
 void add_printer_option(CLI::App& command, std::vector<std::string>& settings);
 void add_plugin_option(CLI::App& command, std::vector<std::string>& files);
-void add_jobs_option(CLI::App& command, int& jobs, const std::string& remark);
+void add_jobs_option(CLI::App& command, int& jobs, const std::string& remark = {});
+void add_repair_flag(CLI::App& command, bool& repair);
 
 /// The defaults with `key=value` settings applied in order.
 /// Throws Error for what set_task_value and check_task refuse, and for a text without '='.

@@ -55,7 +55,8 @@ Finding program() {
 
 Finding libraries() {
   std::string detail;
-  for (const auto& [name, version] : Json::parse(collect_provenance().libraries_json).items())
+  const Json versions = Json::parse(collect_provenance().libraries_json);
+  for (const auto& [name, version] : versions.items())
     detail += (detail.empty() ? "" : ", ") + name + " " + version.get<std::string>();
   return {"libraries", true, detail};
 }
@@ -189,7 +190,7 @@ void examine(const std::vector<std::string>& plugin_files) {
 
 void add_doctor_command(CLI::App& app, int& exit_code) {
   const auto plugins = std::make_shared<std::vector<std::string>>();
-  CLI::App& command = *app.add_subcommand("doctor", "tell what this machine has and lacks");
+  CLI::App& command = *app.add_subcommand("doctor", "Tell what this machine has and lacks");
   add_plugin_option(command, *plugins);
   command.callback([plugins, &exit_code] {
     examine(*plugins);

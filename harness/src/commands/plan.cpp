@@ -170,17 +170,12 @@ class Plan {
 
 void add_plan_command(CLI::App& app, int& exit_code) {
   const auto arguments = std::make_shared<PlanArguments>();
-  CLI::App& command = *app.add_subcommand("plan", "plan the routes of one model and judge them");
-  command
-      .add_option("MODEL", arguments->model,
-                  "a mesh (STL, OBJ, OFF, PLY, 3MF), shape:NAME?key=value, cgal:PATH, or a .wkt "
-                  "file of layers")
-      ->required();
-  command.add_option("--shell", arguments->shell, "planner of the walls")->type_name("NAME");
-  command.add_option("--fill", arguments->fill, "planner of the inside")->type_name("NAME");
+  CLI::App& command = *app.add_subcommand("plan", "Plan the routes of one model and judge them");
+  add_model_argument(command, arguments->model);
+  command.add_option("--shell", arguments->shell, "Planner of the walls")->type_name("NAME");
+  command.add_option("--fill", arguments->fill, "Planner of the inside")->type_name("NAME");
   add_repeated(command, "--set", arguments->set, "SLOT.KEY=VALUE",
-               "a planner's parameter, such as fill.angle_deg=30; may be given several times (see "
-               "routebench planners NAME)");
+               "A planner's parameter, such as fill.angle_deg=30 (see routebench planners NAME)");
   command
       .add_option("--order", arguments->order,
                   "island: finish one island before the next; stage: all walls before the inside")
@@ -190,23 +185,22 @@ void add_plan_command(CLI::App& app, int& exit_code) {
   add_printer_option(command, arguments->printer);
   command
       .add_option("--layers", arguments->layers,
-                  "plan only these, by index from 0, such as 3,10..20; skins are found on all")
+                  "Plan only these, by index from 0, such as 3,10..20; skins are found on all")
       ->type_name("LIST");
-  command.add_option("--gcode", arguments->gcode, "write the routes as G-code")->type_name("FILE");
-  command.add_option("--svg", arguments->svg, "draw the route of each layer into a folder")
+  command.add_option("--gcode", arguments->gcode, "Write the routes as G-code")->type_name("FILE");
+  command.add_option("--svg", arguments->svg, "Draw the route of each layer into a folder")
       ->type_name("DIR");
   command
       .add_option("--json", arguments->json,
-                  "write every score of every layer; - is the standard output, alone")
+                  "Write every score of every layer; - is the standard output, alone")
       ->type_name("FILE|-");
   add_plugin_option(command, arguments->plugins);
   add_jobs_option(command, arguments->jobs,
                   "; planning times by the clock on the wall are to be trusted with 1 only");
-  command.add_option("--seed", arguments->seed, "for planners that draw lots")
+  command.add_option("--seed", arguments->seed, "For planners that draw lots")
       ->type_name("N")
       ->capture_default_str();
-  command.add_flag("--repair", arguments->repair,
-                   "mend what would be refused, and mark the layers where that was needed");
+  add_repair_flag(command, arguments->repair);
   command.callback([arguments, &exit_code] { exit_code = Plan(*arguments).run(); });
 }
 

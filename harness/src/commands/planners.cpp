@@ -82,9 +82,9 @@ void list(const PlannersArguments& arguments) {
 void add_planners_command(CLI::App& app, int& exit_code) {
   const auto arguments = std::make_shared<PlannersArguments>();
   CLI::App& command =
-      *app.add_subcommand("planners", "list the planners, or one with its parameters");
-  command.add_option("NAME", arguments->name, "show this one with its parameters");
-  command.add_flag("--json", arguments->json, "print JSON");
+      *app.add_subcommand("planners", "List the planners, or one with its parameters");
+  command.add_option("NAME", arguments->name, "Show this one with its parameters")->type_name("");
+  command.add_flag("--json", arguments->json, "Print JSON");
   add_plugin_option(command, arguments->plugins);
   command.callback([arguments, &exit_code] {
     list(*arguments);

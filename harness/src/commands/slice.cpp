@@ -108,28 +108,23 @@ void slice(const SliceArguments& arguments) {
 void add_slice_command(CLI::App& app, int& exit_code) {
   const auto arguments = std::make_shared<SliceArguments>();
   CLI::App& command =
-      *app.add_subcommand("slice", "cut a model into layers and report on its mesh");
-  command
-      .add_option("MODEL", arguments->model,
-                  "a mesh (STL, OBJ, OFF, PLY, 3MF), shape:NAME?key=value, cgal:PATH, or a .wkt "
-                  "file of layers")
-      ->required();
+      *app.add_subcommand("slice", "Cut a model into layers and report on its mesh");
+  add_model_argument(command, arguments->model);
   add_task_option(command, arguments->task);
   command
       .add_option("--method", arguments->method,
-                  "how triangles and planes are brought together; the layers are the same")
+                  "How triangles and planes are brought together; the layers are the same")
       ->type_name("bucket|sweep|naive")
       ->capture_default_str();
-  command.add_option("--wkt", arguments->wkt, "write the layers, one MULTIPOLYGON a line")
+  command.add_option("--wkt", arguments->wkt, "Write the layers, one MULTIPOLYGON a line")
       ->type_name("FILE");
-  command.add_option("--svg", arguments->svg, "draw each layer into a folder")->type_name("DIR");
+  command.add_option("--svg", arguments->svg, "Draw each layer into a folder")->type_name("DIR");
   command
       .add_option("--json", arguments->json,
-                  "write the report and each layer's measures; - is the standard output, alone")
+                  "Write the report and each layer's measures; - is the standard output, alone")
       ->type_name("FILE|-");
-  add_jobs_option(command, arguments->jobs, "");
-  command.add_flag("--repair", arguments->repair,
-                   "mend what would be refused, and mark the layers where that was needed");
+  add_jobs_option(command, arguments->jobs);
+  add_repair_flag(command, arguments->repair);
   command.callback([arguments, &exit_code] {
     slice(*arguments);
     exit_code = 0;
