@@ -11,7 +11,7 @@ from matplotlib.patches import Rectangle
 from .axis import axis_label, number_ticks
 from .quantities import Scale, format_number, scale_for
 from .results import TIMED_METRICS, Item, Metric, Results, Slot, Value
-from .sheet import MARGIN, Sheet
+from .sheet import MARGIN, Sheet, even_columns
 from .style import (
     ABSENT,
     MUTED,
@@ -71,7 +71,7 @@ def layout_for(results: Results) -> Layout:
     least, most = _PANEL_WIDTHS
     room = PAGE_WIDTH - 2 * MARGIN - label_width - _LABEL_GAP
     columns = min(len(results.models), _MOST_COLUMNS, int(room / least))
-    columns = _even_columns(len(results.models), columns)
+    columns = even_columns(len(results.models), columns)
     panel_width = min(most, room / columns)
     pitch = max(
         _LEAST_PITCH, text_height(max(map(len, lines)), TEXT_SIZE) + 0.05
@@ -90,12 +90,6 @@ def layout_for(results: Results) -> Layout:
         panel_height=height,
         label_width=label_width,
     )
-
-
-def _even_columns(panels: int, most: int) -> int:
-    """The fewest columns that need no more rows than `most` would."""
-    rows = -(-panels // most)
-    return -(-panels // rows)
 
 
 def draw(
