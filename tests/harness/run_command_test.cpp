@@ -150,10 +150,7 @@ TEST_F(RunCommand, OneRunAtATimeAndInterruptedItKeepsWhatIsDone) {
   const std::vector<std::string> arguments{
       "run", in_folder("t.toml"), "--plugin", ROUTEBENCH_CULPRIT_PLUGIN, "--out", in_folder("out")};
   ProgramRun first;
-  std::thread running([&] {
-    RunCommand* self = this;
-    first = self->call(arguments);
-  });
+  std::thread running([&] { first = call(arguments); });
   const fs::path file = folder_ / "out" / "results.sqlite";
   const fs::path lock = folder_ / "out" / ".lock";
   std::string second_err;

@@ -47,7 +47,7 @@ class GcodeWriter {
   void mark_layer(const Layer& layer);
   void mark_stroke(Type type, double width_mm);
   void travel(Point2 to, const EdgeGrid& outline);
-  void extrude(const Stroke& stroke, double height_mm);
+  void extrude(const Stroke& stroke);
   void move_filament(double mm);
   void move_to_height(double z_mm);
   void append_place(Point2 p);
@@ -67,9 +67,5 @@ class GcodeWriter {
   double filament_mm_ = 0;           ///< that the strokes so far need
   std::int64_t filament_units_ = 0;  ///< that was written for them
 };
-
-/// Bead section of a width and height: a rectangle with round ends, an ellipse where the bead is
-/// higher than wide.
-[[nodiscard]] double bead_section_mm2(double width_mm, double height_mm);
 
 }  // namespace routebench
