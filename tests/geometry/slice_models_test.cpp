@@ -39,10 +39,16 @@ Sliced load_and_slice(const std::filesystem::path& file, double layer_height_mm,
   return result;
 }
 
-/// A layer height that puts a plane exactly through a vertex near the middle of the mesh, about
-/// `planes` planes below it.
+/// A layer height that puts a plane exactly through a vertex half-way up, with at least `planes`
+/// planes below it.
 double height_through_a_vertex(const Mesh& mesh, int planes) {
-  const double z_mm = mesh.vertices[mesh.vertices.size() / 2].z;
+  std::vector<double> heights;
+  for (const Point3& p : mesh.vertices)
+    if (p.z > 0) heights.push_back(p.z);
+  std::nth_element(heights.begin(),
+                   heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 2),
+                   heights.end());
+  const double z_mm = heights[heights.size() / 2];
   for (int k = planes;; ++k) {
     const double height_mm = z_mm / (k + 0.5);
     if ((k + 0.5) * height_mm == z_mm) return height_mm;
@@ -67,7 +73,7 @@ TEST_P(SoundModel, HasTheAreaOfItsTriangleCutsInEveryLayer) {
     const Mesh mesh = load_model(entry.path().string()).mesh;
     double top_mm = 0;
     for (const Point3& p : mesh.vertices) top_mm = std::max(top_mm, p.z);
-    for (const double height_mm : {top_mm / 5.3, top_mm / 17, height_through_a_vertex(mesh, 4)}) {
+    for (const double height_mm : {top_mm / 13.3, height_through_a_vertex(mesh, 4)}) {
       SliceOptions options;
       options.layer_height_mm = height_mm;
       const Slices slices = slice_mesh(mesh, options, entry.path().string());
