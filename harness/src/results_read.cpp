@@ -33,12 +33,15 @@ fs::path results_file(const fs::path& folder_or_file) {
 
 KnownCells read_known_cells(Database& database) {
   KnownCells cells;
+  // A run's JSON is read once, not once a cell.
   Statement select(database,
-                   "SELECT cell_key, cell_id, outcome, route_hash, cell_wall_s, git_commit,"
-                   " json_extract(config_resolved_json, '$.run.timeout_s'),"
-                   " json_extract(config_resolved_json, '$.run.memory_mb'),"
-                   " cell_id IN (SELECT cell_id FROM current_cell)"
-                   " FROM cell JOIN run USING(run_id)");
+                   "WITH origin AS MATERIALIZED (SELECT run_id,"
+                   " json_extract(config_resolved_json, '$.run.timeout_s') AS timeout_s,"
+                   " json_extract(config_resolved_json, '$.run.memory_mb') AS memory_mb,"
+                   " json_extract(libraries_json, '$.program_build_id') AS build_id FROM run)"
+                   " SELECT cell_key, cell_id, outcome, route_hash, cell_wall_s, timeout_s,"
+                   " memory_mb, build_id, cell_id IN (SELECT cell_id FROM current_cell)"
+                   " FROM cell JOIN origin USING(run_id)");
   Statement samples(database,
                     "SELECT repetition FROM timing_sample WHERE cell_id = ? ORDER BY repetition");
   while (select.next()) {
@@ -47,9 +50,9 @@ KnownCells read_known_cells(Database& database) {
     cell.outcome = outcome_named(select.text(2));
     if (!select.is_null(3)) cell.route_hash = select.text(3);
     cell.cell_wall_s = select.real(4);
-    if (!select.is_null(5)) cell.git_commit = select.text(5);
-    cell.timeout_s = select.real(6);
-    cell.memory_mb = static_cast<int>(select.integer(7));
+    cell.timeout_s = select.real(5);
+    cell.memory_mb = static_cast<int>(select.integer(6));
+    cell.program_build_id = select.text(7);
     cell.current = select.integer(8) != 0;
     samples.bind(cell.cell_id);
     while (samples.next()) cell.repetitions.push_back(static_cast<int>(samples.integer(0)));

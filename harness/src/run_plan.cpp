@@ -1,7 +1,6 @@
 #include "run_plan.hpp"
 
 #include <algorithm>
-#include <ostream>
 #include <set>
 #include <tuple>
 
@@ -9,6 +8,7 @@
 #include "json_parts.hpp"
 #include "routebench/geometry/error.hpp"
 #include "routebench/planning/sha256.hpp"
+#include "run_progress.hpp"
 
 namespace routebench {
 namespace {
@@ -150,6 +150,50 @@ bool is_chosen(const ReadyContender& contender, const ReadyModel& model,
          fits(options.only_models, {model.record.spec});
 }
 
+/// Models by their place in the config and by shape: settings that differ in nothing else share
+/// layers and demands.
+using ModelTable = std::map<std::pair<std::size_t, Shape>, const ReadyModel*>;
+
+/// Makes one model ready for every setting.
+void add_model(const ExperimentConfig& config, std::size_t place_in_config,
+               const SliceModelOptions& slicing, const ParallelFor& parallel_for, RunPlan& plan,
+               ModelTable& table) {
+  const ConfiguredModel& model = config.models[place_in_config];
+  std::vector<std::pair<Task, const ReadyModel*>> before;
+  for (const Setting& setting : config.settings) {
+    const ReadyModel*& place = table[{place_in_config, shape_of(setting.task)}];
+    if (place != nullptr) continue;
+    PreparedModel prepared = prepared_model(model, setting.task, before, slicing, parallel_for);
+    ModelRecord record = record_of(model.spec, prepared.sliced);
+    plan.models.push_back({std::move(record), std::move(prepared)});
+    place = &plan.models.back();
+    before.emplace_back(setting.task, place);
+  }
+  const ReadyModel& first = *before.front().second;
+  plan.notes.push_back("sliced " + model.spec + ": " + std::to_string(first.record.layers) +
+                       " layers");
+  for (const std::string& warning : first.prepared.sliced.warnings)
+    plan.notes.push_back("warning: " + model.spec + ": " + warning);
+}
+
+void add_cells(const ExperimentConfig& config, const RunnerOptions& options,
+               const ModelTable& models, RunPlan& plan) {
+  for (std::size_t s = 0; s < config.settings.size(); ++s)
+    for (std::size_t m = 0; m < config.models.size(); ++m)
+      for (const std::uint64_t seed : config.seeds)
+        for (const ReadyContender& contender : plan.contenders) {
+          PlannedCell cell;
+          cell.model = models.at({m, shape_of(config.settings[s].task)});
+          cell.contender = &contender;
+          cell.setting = &plan.settings[s];
+          cell.seed = seed;
+          cell.chosen = is_chosen(contender, *cell.model, options);
+          cell.key = key_of(cell);
+          cell.label = label_of(cell, config);
+          plan.cells.push_back(std::move(cell));
+        }
+}
+
 }  // namespace
 
 RunPlan make_plan(const ExperimentConfig& config, const PlannerSet& planners,
@@ -166,42 +210,14 @@ RunPlan make_plan(const ExperimentConfig& config, const PlannerSet& planners,
   }
   for (const Setting& setting : config.settings)
     plan.settings.push_back({record_of(setting), Judge(setting.task, setting.printer)});
-
-  // By model and shape: settings that differ in nothing else share their layers and demands.
-  std::map<std::pair<std::size_t, Shape>, const ReadyModel*> ready;
-  const SliceModelOptions slicing{.repair = options.repair};
+  ModelTable models;
+  RunProgress progress(log, "slicing model", config.models.size(),
+                       static_cast<double>(config.models.size()));
   for (std::size_t m = 0; m < config.models.size(); ++m) {
-    const ConfiguredModel& model = config.models[m];
-    std::vector<std::pair<Task, const ReadyModel*>> before;
-    for (const Setting& setting : config.settings) {
-      const ReadyModel*& place = ready[{m, shape_of(setting.task)}];
-      if (place != nullptr) continue;
-      PreparedModel prepared = prepared_model(model, setting.task, before, slicing, parallel_for);
-      ModelRecord record = record_of(model.spec, prepared.sliced);
-      plan.models.push_back({std::move(record), std::move(prepared)});
-      place = &plan.models.back();
-      before.emplace_back(setting.task, place);
-    }
-    const ModelRecord& record = before.front().second->record;
-    *log.out << "sliced " << model.spec << ": " << record.layers << " layers\n";
-    for (const std::string& warning : before.front().second->prepared.sliced.warnings)
-      *log.out << "warning: " << model.spec << ": " << warning << '\n';
+    add_model(config, m, {.repair = options.repair}, parallel_for, plan, models);
+    progress.step(1, "", false);
   }
-
-  for (std::size_t s = 0; s < config.settings.size(); ++s)
-    for (std::size_t m = 0; m < config.models.size(); ++m)
-      for (const std::uint64_t seed : config.seeds)
-        for (const ReadyContender& contender : plan.contenders) {
-          PlannedCell cell;
-          cell.model = ready.at({m, shape_of(config.settings[s].task)});
-          cell.contender = &contender;
-          cell.setting = &plan.settings[s];
-          cell.seed = seed;
-          cell.chosen = is_chosen(contender, *cell.model, options);
-          cell.key = key_of(cell);
-          cell.label = label_of(cell, config);
-          plan.cells.push_back(std::move(cell));
-        }
+  add_cells(config, options, models, plan);
   return plan;
 }
 

@@ -50,6 +50,7 @@ struct RunPlan {
   std::deque<ReadyContender> contenders;
   std::deque<ReadySetting> settings;
   std::vector<PlannedCell> cells;  ///< setting by setting, model by model
+  std::vector<std::string> notes;  ///< lines for people: what was sliced, with what warnings
 };
 
 /// Checks contenders, reads and slices models, and lists the cells.

@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <iomanip>
+#include <limits>
 #include <ostream>
 #include <set>
 #include <sstream>
@@ -19,8 +20,9 @@ constexpr double kTravelShiftMm = 1;
 /// What contenders are compared on: a model with a seed.
 using Case = std::pair<std::string, std::uint64_t>;
 
+/// NaN where there is none, which spreads to sums.
 double total(const StoredCell& cell, std::string_view metric) {
-  return cell.totals.at(metric_index(metric)).value_or(0);
+  return cell.totals.at(metric_index(metric)).value_or(std::numeric_limits<double>::quiet_NaN());
 }
 
 /// The cells of one setting, by contender and case.
@@ -119,6 +121,7 @@ Ranking ranking_of(const SettingCells& setting) {
 }
 
 std::string fixed(double value, int digits) {
+  if (std::isnan(value)) return "-";
   std::ostringstream text;
   text << std::fixed << std::setprecision(digits) << value;
   return text.str();

@@ -165,9 +165,9 @@ void Execution::tell_what_was_found(const KnownCells& known) const {
   if (summary_.found == 0) return;
   *log_.out << summary_.found << " of " << plan_.cells.size()
             << " cells are in the database already\n";
-  const std::optional<std::string> commit = collect_provenance().git_commit;
+  const std::string build_id = collect_provenance().program_build_id;
   const auto others = std::count_if(states_.begin(), states_.end(), [&](const CellState& state) {
-    return state.cell_id != 0 && known.at(state.cell->key).git_commit != commit;
+    return state.cell_id != 0 && known.at(state.cell->key).program_build_id != build_id;
   });
   if (others > 0)
     *log_.out << others
@@ -317,6 +317,8 @@ void Execution::take_times() {
 }
 
 RunSummary Execution::run() {
+  // Only now: whatever is wrong with config, models or results has been said in a line of its own.
+  for (const std::string& note : plan_.notes) *log_.out << note << '\n';
   summary_.file = results_.file();
   const KnownCells known = results_.known_cells();
   states_ = states_of(plan_, known, config_.run);
@@ -339,6 +341,7 @@ RunSummary Execution::run() {
 RunSummary dry_run(const ExperimentConfig& config, const RunPlan& plan,
                    const RunnerOptions& options, const RunLog& log) {
   const KnownCells known = options.fresh ? KnownCells{} : known_cells(options.out, config.name);
+  for (const std::string& note : plan.notes) *log.out << note << '\n';
   RunSummary summary;
   double seconds = 0;
   std::size_t timed = 0;

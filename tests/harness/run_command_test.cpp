@@ -141,6 +141,9 @@ TEST_F(RunCommand, WhatIsWrongIsSaidInOneLineBeforeAnythingIsWritten) {
   expect_run_refused(good, "--jobs", {"--jobs", "-3"});
   write("square.wkt", "MULTIPOLYGON Z (((0 0 nan\n");
   expect_run_refused(good, "square.wkt");
+  write("square.wkt", kSquare);
+  expect_run_refused(
+      "name = \"t\"\nmodels = [\"square.wkt\", \"none.stl\"]\n" + std::string(kHonest), "none.stl");
   fs::remove(folder_ / "square.wkt");
   expect_run_refused(good, "square.wkt");
 }

@@ -96,22 +96,21 @@ void add_run_command(CLI::App& app, int& exit_code) {
       ->type_name("DIR");
   command
       .add_option("--jobs,-j", arguments->jobs,
-                  "cells at a time; 0: one a core. Timing samples are always taken one at a time "
-                  "[as the config says]")
+                  "cells at a time; 0: one a core [as the config says]")
       ->check(CLI::Range(0, 1024))
       ->type_name("N");
   command.add_flag("--fresh", arguments->fresh,
-                   "start anew; the old results are replaced when the first new cell is done");
+                   "start anew; replace old results when a new cell is done");
   command.add_flag("--dry-run", arguments->dry_run,
-                   "check everything and say what would be executed, but write nothing");
-  command.add_flag("--repair", arguments->repair,
-                   "slice broken models as well as can be, and mark the layers concerned");
+                   "check, say what would be executed, write nothing");
+  command.add_flag("--repair", arguments->repair, "slice broken models, mark the layers concerned");
   add_plugin_option(command, arguments->plugins);
   add_repeated(command, "--only", arguments->only, "WHAT",
-               "execute only these: contender=NAME or model=SPEC; may be given several times");
+               "execute only contender=NAME or model=SPEC");
   command.footer(
       "Cells that the results hold already are not executed again, so the same command goes on\n"
-      "after an interruption. Ctrl-C keeps what is done.\n"
+      "after an interruption. Ctrl-C keeps what is done. Timing samples are taken one at a time,\n"
+      "whatever --jobs says.\n"
       "Exit codes: 0 all cells valid, 1 some are not, 2 bad usage, config or model, 3 internal\n"
       "error, 130 interrupted.");
   command.callback([arguments, &exit_code] { exit_code = run(*arguments); });

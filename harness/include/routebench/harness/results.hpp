@@ -105,7 +105,7 @@ struct KnownCell {
   double cell_wall_s = 0;
   double timeout_s = 0;  ///< the limits under which it was executed
   int memory_mb = 0;
-  std::optional<std::string> git_commit;  ///< of the program that executed it
+  std::string program_build_id;  ///< of the program that executed it
 };
 
 /// By cell key.
