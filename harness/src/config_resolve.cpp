@@ -63,8 +63,9 @@ std::string resolved_json(const ExperimentConfig& config, const Registry& regist
     settings.push_back({{"label", setting.label},
                         {"task", json_of(setting.task)},
                         {"printer", json_of(setting.printer)}});
-  Json models = Json::array();
-  for (const ConfiguredModel& model : config.models) models.push_back(model.spec);
+  Json models = Json::array(), optional_models = Json::array();
+  for (const ConfiguredModel& model : config.models)
+    (model.optional ? optional_models : models).push_back(model.spec);
   Json contenders = Json::array();
   for (const ConfiguredContender& contender : config.contenders) {
     Json entry = json_of(Contender(contender.spec, registry));
@@ -74,6 +75,7 @@ std::string resolved_json(const ExperimentConfig& config, const Registry& regist
   return text_of({{"name", config.name},
                   {"seeds", config.seeds},
                   {"models", std::move(models)},
+                  {"optional_models", std::move(optional_models)},
                   {"plugins", config.plugins},
                   {"settings", std::move(settings)},
                   {"run",

@@ -155,9 +155,9 @@ bool is_chosen(const ReadyContender& contender, const ReadyModel& model,
 using ModelTable = std::map<std::pair<std::size_t, Shape>, const ReadyModel*>;
 
 /// Makes one model ready for every setting.
-void add_model(const ExperimentConfig& config, std::size_t place_in_config,
-               const SliceModelOptions& slicing, const ParallelFor& parallel_for, RunPlan& plan,
-               ModelTable& table) {
+void make_ready(const ExperimentConfig& config, std::size_t place_in_config,
+                const SliceModelOptions& slicing, const ParallelFor& parallel_for, RunPlan& plan,
+                ModelTable& table) {
   const ConfiguredModel& model = config.models[place_in_config];
   std::vector<std::pair<Task, const ReadyModel*>> before;
   for (const Setting& setting : config.settings) {
@@ -176,14 +176,32 @@ void add_model(const ExperimentConfig& config, std::size_t place_in_config,
     plan.notes.push_back("warning: " + model.spec + ": " + warning);
 }
 
+/// Makes a model ready, or notes why one that may be missing is left out.
+void add_model(const ExperimentConfig& config, std::size_t place_in_config,
+               const SliceModelOptions& slicing, const ParallelFor& parallel_for, RunPlan& plan,
+               ModelTable& table) {
+  const ConfiguredModel& model = config.models[place_in_config];
+  const std::size_t ready_before = plan.models.size();
+  try {
+    make_ready(config, place_in_config, slicing, parallel_for, plan, table);
+  } catch (const Error& error) {
+    if (!model.optional || error.kind() != ErrorKind::kBadInput) throw;
+    while (plan.models.size() > ready_before) plan.models.pop_back();
+    std::erase_if(table, [&](const auto& entry) { return entry.first.first == place_in_config; });
+    plan.notes.push_back(std::string("left out an optional model: ") + error.what());
+  }
+}
+
 void add_cells(const ExperimentConfig& config, const RunnerOptions& options,
                const ModelTable& models, RunPlan& plan) {
   for (std::size_t s = 0; s < config.settings.size(); ++s)
     for (std::size_t m = 0; m < config.models.size(); ++m)
       for (const std::uint64_t seed : config.seeds)
         for (const ReadyContender& contender : plan.contenders) {
+          const auto ready = models.find({m, shape_of(config.settings[s].task)});
+          if (ready == models.end()) continue;  // optional, and left out
           PlannedCell cell;
-          cell.model = models.at({m, shape_of(config.settings[s].task)});
+          cell.model = ready->second;
           cell.contender = &contender;
           cell.setting = &plan.settings[s];
           cell.seed = seed;

@@ -300,6 +300,16 @@ TEST_F(Runner, FreshStartsAnew) {
   EXPECT_EQ(cells().size(), 2u);
 }
 
+TEST_F(Runner, AnOptionalModelThatCannotBeHadIsLeftOutAndNamed) {
+  const std::string more = "optional_models = [\"large.wkt\", \"lost.wkt\"]\n";
+  const RunSummary summary =
+      execute(config(hatch_contender("zigzag"), "repetitions = 1", more, "\"small.wkt\""));
+  EXPECT_EQ(summary.executed, 2u);
+  EXPECT_EQ(cell("zigzag", "large.wkt").outcome, Outcome::kValid);
+  EXPECT_NE(log_.str().find("left out an optional model"), std::string::npos);
+  EXPECT_NE(log_.str().find("lost.wkt"), std::string::npos);
+}
+
 TEST_F(Runner, NothingIsWrittenIfAnythingIsWrongBeforehand) {
   EXPECT_NE(
       complaint(config(hatch_contender("a"), "repetitions = 1", "", "\"small.wkt\", \"none.wkt\""))
