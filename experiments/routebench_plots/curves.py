@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
 from .axis import axis_label, number_ticks
-from .quantities import scale_for
+from .quantities import counted, scale_for
 from .results import Item, LayerRows, Metric, Results
 from .sheet import LegendEntry, Sheet
 from .style import PAGE_WIDTH, Look, looks
@@ -55,7 +55,8 @@ def draw(
     notes = ["Each point is one layer at its height z."]
     if repaired:
         notes.append(
-            f"{len(repaired)} layers were repaired before planning: shaded."
+            f"{counted(len(repaired), 'layer')} repaired before planning: "
+            "shaded."
         )
     sheet = Sheet(
         width=PAGE_WIDTH,

@@ -46,15 +46,17 @@ class Figure:
 def chosen_metrics(
     results: Results, names: Sequence[str] | None
 ) -> list[Metric]:
-    """The metrics with these names; those of interest without any.
+    """The metrics with these names.
 
-    The name `all` means every metric of the database.
+    Without names, those of interest that have any value. The name `all`
+    means every metric of the database.
     """
     if names is None:
         return [
             metric
             for name in METRICS_OF_INTEREST
             if (metric := results.metric(name)) is not None
+            and results.has_values(metric)
         ]
     if list(names) == ["all"]:
         return list(results.metrics)
@@ -99,16 +101,20 @@ def draw_all(
     metrics: Sequence[Metric],
     folder: Path,
     formats: Sequence[str],
+    report: Callable[[int, int], None],
 ) -> list[str]:
     """Writes all figures and tables; returns file names in that order.
 
-    Equal databases make equal bytes.
+    Equal databases make equal bytes. `report` hears after each figure how
+    many are done, and of how many.
     """
     written = []
     with applied():
-        for figure in figures(results, metrics):
+        planned = list(figures(results, metrics))
+        for done, figure in enumerate(planned, start=1):
             figure.draw().save(folder, figure.stem, formats)
             written += [f"{figure.stem}.{ending}" for ending in formats]
+            report(done, len(planned))
     made = tables.tables(results, metrics)
     for name, text in (
         (

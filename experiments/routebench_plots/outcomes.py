@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from matplotlib.axes import Axes
 from matplotlib.patches import Rectangle
 
+from .quantities import counted
 from .results import NOT_RUN, VALID, Item, Results, Slot
 from .sheet import MARGIN, Sheet
 from .style import (
@@ -153,8 +154,8 @@ def _notes(
         head += f" {missing} not run."
     if earlier_cells:
         head += (
-            f" {earlier_cells} cells of earlier runs, which the last one did "
-            "not ask for, are left out."
+            f" Left out: {counted(earlier_cells, 'cell')} of earlier runs "
+            "that the last one did not ask for."
         )
     reasons = [
         f"{model.label} × {contender.label}: "
@@ -168,6 +169,7 @@ def _notes(
     notes = [head, *reasons[:_MOST_REASONS]]
     if len(reasons) > _MOST_REASONS:
         notes.append(
-            f"{len(reasons) - _MOST_REASONS} more reasons: see table.md."
+            f"{counted(len(reasons) - _MOST_REASONS, 'more reason')}: see "
+            "table.md."
         )
     return notes

@@ -83,6 +83,11 @@ def quantity(value: float, unit: str) -> str:
     return f"{number} {pretty_unit(unit)}" if unit else number
 
 
+def counted(number: int, noun: str) -> str:
+    """One layer, two layers."""
+    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
+
+
 def in_sentence(label: str) -> str:
     """A label in the middle of a sentence; CPU stays CPU."""
     if label[1:2].isupper():

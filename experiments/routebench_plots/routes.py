@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from matplotlib.axes import Axes
 
-from .quantities import format_number, in_sentence, quantity
+from .quantities import counted, format_number, in_sentence, quantity
 from .results import NOT_RUN, VALID, Cell, Item, Results
 from .route_grid import GAP, Grid, View, grid_for, view_of
 from .route_panel import (
@@ -267,6 +267,6 @@ def _notes(view: View, strokes: Sequence[Stroke], tally: Tally) -> list[str]:
         for stroke in strokes
     )
     if stray:
-        notes.append(f"{stray} strokes run out of the picture.")
+        notes.append(f"{counted(stray, 'stroke')} partly out of the picture.")
     notes.append(tally.sentence())
     return notes

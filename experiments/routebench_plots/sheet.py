@@ -16,6 +16,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.legend import Legend
+from matplotlib.transforms import Bbox
 
 from .style import DPI, MUTED, SMALL_SIZE, TEXT_SIZE, TITLE_SIZE
 from .text import POINTS_PER_INCH, text_height, text_width, wrap, wrapped
@@ -150,9 +151,7 @@ class Sheet:
 
     def save(self, folder: Path, stem: str, formats: Sequence[str]) -> None:
         """Writes one file for each format; equal figures, equal bytes."""
-        # One layout for all formats, and half of the time saved.
-        self.figure.draw_without_rendering()
-        self.figure.set_layout_engine("none")
+        self._settle()
         for name in formats:
             self.figure.savefig(
                 folder / f"{stem}.{name}",
@@ -160,6 +159,21 @@ class Sheet:
                 dpi=DPI,
                 metadata=_METADATA[name],
             )
+
+    def _settle(self) -> None:
+        """Lays out once for all formats.
+
+        The solver behind the layout visits its variables in the order of
+        their addresses, so the last bits of its result differ from run to
+        run. They are rounded away.
+        """
+        if self.figure.get_layout_engine() is None:
+            return
+        self.figure.draw_without_rendering()
+        self.figure.set_layout_engine("none")
+        for axes in self.figure.axes:
+            corners = axes.get_position(original=True).get_points()
+            axes.set_position(Bbox(corners.round(6)))
 
     def _add_legend(
         self, entries: Sequence[LegendEntry], width: float
@@ -198,3 +212,9 @@ class Sheet:
         renderer = self.figure.canvas.get_renderer()
         extent = artist.get_window_extent(renderer)
         return float(extent.height / self.figure.dpi)
+
+
+def even_columns(panels: int, most: int) -> int:
+    """The fewest columns that need no more rows than `most` would."""
+    rows = -(-panels // most)
+    return -(-panels // rows)

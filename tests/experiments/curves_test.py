@@ -99,7 +99,7 @@ class CurvesTest(PlotTestCase):
     def test_repaired_layers_are_marked(self) -> None:
         self.cell("a", [3.0, 4.0, 5.0], repaired=[1])
         sheet = self.draw()
-        self.assertIn("1 layers were repaired", note(sheet))
+        self.assertIn("1 layer repaired before planning: shaded", note(sheet))
         marks = [
             ln
             for ln in visible_axes(sheet)[0].lines
@@ -112,6 +112,15 @@ class CurvesTest(PlotTestCase):
         sheet = self.draw()
         self.assertIn("0 of 1 cells shown", note(sheet))
         self.assert_laid_out(sheet)
+
+    def test_the_layouts_last_bits_are_rounded_away(self) -> None:
+        """They differ from run to run, and with them the files' bytes."""
+        self.cell("a", [3.0, 4.0])
+        sheet = self.draw()
+        sheet.save(self.folder, "x", ["svg"])
+        for axes in visible_axes(sheet):
+            for number in axes.get_position(original=True).extents:
+                self.assertEqual(number, round(number, 6))
 
     def test_further_seeds_are_counted(self) -> None:
         contender = self.made.contender("a")

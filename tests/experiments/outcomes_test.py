@@ -117,7 +117,7 @@ class OutcomesTest(PlotTestCase):
         made.cell(model, made.contender("new"), setting)
         sheet = self.draw(made)
         self.assertNotIn("old", words(sheet))
-        self.assertIn("1 cells of earlier runs", note(sheet))
+        self.assertIn("Left out: 1 cell of earlier runs", note(sheet))
 
     def test_models_stand_in_the_order_of_the_config(self) -> None:
         path = fill(self.folder / "r.sqlite", ["z", "a"], ["d", "b"])

@@ -118,6 +118,12 @@ class ReadTest(PlotTestCase):
         value = results.value(slot, self.metric(results, "deposit"))
         assert value is not None
         self.assertEqual(value.median, 0)
+        with_values = [
+            metric.name
+            for metric in results.metrics
+            if results.has_values(metric)
+        ]
+        self.assertEqual(with_values, ["deposit"])
 
     def test_large_seeds(self) -> None:
         made = Database(self.folder / "r.sqlite")

@@ -119,6 +119,13 @@ class RoutesTest(PlotTestCase):
         self.assertEqual(len(scales), 1)
         self.assert_laid_out(sheet)
 
+    def test_four_panels_stand_two_by_two(self) -> None:
+        for name in "abcd":
+            self.cell(name, STROKES)
+        corners = [a.get_window_extent().p0 for a in self.panels(self.draw())]
+        self.assertEqual(len({round(x) for x, _ in corners}), 2)
+        self.assertEqual(len({round(y) for _, y in corners}), 2)
+
     def test_scale_bar_is_true(self) -> None:
         self.cell("a", STROKES)
         sheet = self.draw()
@@ -153,7 +160,7 @@ class RoutesTest(PlotTestCase):
         sheet = self.draw()
         low, high = self.panels(sheet)[0].get_xlim()
         self.assertLess(high - low, 40)
-        self.assertIn("1 strokes run out of the picture", note(sheet))
+        self.assertIn("1 stroke partly out of the picture", note(sheet))
 
     def test_flat_and_tall_layers_fit(self) -> None:
         for name in "abc":

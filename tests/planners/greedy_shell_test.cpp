@@ -6,60 +6,26 @@
 #include <string>
 #include <vector>
 
-#include "nasty_layers.hpp"
-#include "random_polygons.hpp"
-#include "routebench/geometry/region.hpp"
-#include "routebench/geometry/vec.hpp"
-#include "routebench/planning/plugin.hpp"
+#include "planning.hpp"
 #include "routebench/planning/walls.hpp"
 
 namespace routebench {
 namespace {
 
-constexpr double kWidth = 0.5;
-constexpr double kSpacing = 0.4375;  // on the grid, so that corners can be computed by hand
+using test::kSpacing;
+using test::kWidth;
+using test::layer_of;
+using test::length_mm;
+using test::trial_layers;
+using test::word;
 
-PlanContext context_for(int perimeters) {
-  PlanContext context;
-  context.line_width_mm = kWidth;
-  context.spacing_mm = kSpacing;
-  context.perimeters = perimeters;
-  return context;
-}
-
-Layer layer_of(Polygons polygons) {
-  Layer layer;
-  layer.polygons = std::move(polygons);
-  return layer;
-}
+PlanContext context_for(int perimeters) { return test::context_for(perimeters, 1); }
 
 Route plan(const Layer& layer, const PlanContext& context, const ParamSet& params = {}) {
-  Registry registry;
-  register_builtin_planners(registry);
-  return registry.at("greedy_shell").make(params)->plan(layer, context);
-}
-
-ParamValue word(const char* text) { return std::string(text); }
-
-double length_mm(const Route& route) {
-  double sum = 0;
-  for (const Stroke& stroke : route.strokes)
-    for (std::size_t i = 1; i < stroke.points.size(); ++i)
-      sum += distance(stroke.points[i - 1], stroke.points[i]);
-  return sum;
+  return test::plan("greedy_shell", layer, context, params);
 }
 
 Layer square() { return layer_of({{test::rectangle(0, 0, 10, 10), {}}}); }
-
-/// Layers on which two ways of planning are compared.
-std::vector<Layer> trial_layers() {
-  std::vector<Layer> layers;
-  for (const test::NastyLayer& nasty : test::nasty_layers())
-    if (nasty.name != "thousand_islands") layers.push_back(nasty.layer);
-  for (std::uint64_t seed = 1; seed <= 10; ++seed)
-    layers.push_back(layer_of(test::random_polygons(seed)));
-  return layers;
-}
 
 TEST(GreedyShell, WallsOfASquareAreWhereTheyMustBe) {
   PlanContext context = context_for(2);

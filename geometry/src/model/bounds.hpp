@@ -7,7 +7,7 @@
 
 #include "routebench/geometry/types.hpp"
 
-namespace routebench {
+namespace routebench::models {
 
 /// The smallest box, parallel to the axes, around what was added.
 struct Bounds {
@@ -46,4 +46,4 @@ struct Bounds {
   }
 };
 
-}  // namespace routebench
+}  // namespace routebench::models

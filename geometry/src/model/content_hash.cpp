@@ -4,7 +4,7 @@
 #include <bit>
 #include <vector>
 
-namespace routebench {
+namespace routebench::models {
 namespace {
 
 /// A bijection of 64-bit numbers in which every input bit moves about half of the output bits.
@@ -48,4 +48,4 @@ std::uint64_t content_hash(const Mesh& mesh) {
   return mix(sum + mesh.triangles.size());
 }
 
-}  // namespace routebench
+}  // namespace routebench::models

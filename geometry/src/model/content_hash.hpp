@@ -5,10 +5,10 @@
 
 #include "routebench/geometry/types.hpp"
 
-namespace routebench {
+namespace routebench::models {
 
 /// Depends on the coordinates and directions of the triangles; neither on their order nor on the
 /// order of the vertices nor on the corner at which a triangle starts.
 [[nodiscard]] std::uint64_t content_hash(const Mesh& mesh);
 
-}  // namespace routebench
+}  // namespace routebench::models

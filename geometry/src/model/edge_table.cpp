@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace routebench {
+namespace routebench::models {
 namespace {
 
 /// Calls visit(lower, upper, rising) for the three sides of a triangle.
@@ -35,4 +35,4 @@ EdgeTable::EdgeTable(std::span<const std::array<std::uint32_t, 3>> triangles, st
   }
 }
 
-}  // namespace routebench
+}  // namespace routebench::models

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-namespace routebench {
+namespace routebench::models {
 
 /// The sides of all triangles, grouped by the edge that they lie on.
 ///
@@ -58,4 +58,4 @@ class EdgeTable {
   std::vector<Side> sides_;
 };
 
-}  // namespace routebench
+}  // namespace routebench::models

@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-namespace routebench {
+namespace routebench::models {
 
 FacetSink::FacetSink(const ReadContext& context, std::size_t expected)
     : context_(context), welder_(expected / 2) {
@@ -57,4 +57,4 @@ RawMesh FacetSink::finish() {
   return std::move(raw_);
 }
 
-}  // namespace routebench
+}  // namespace routebench::models

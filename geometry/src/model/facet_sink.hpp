@@ -8,7 +8,7 @@
 #include "model/raw_mesh.hpp"
 #include "model/vertex_welder.hpp"
 
-namespace routebench {
+namespace routebench::models {
 
 using Facet = std::array<std::array<float, 3>, 3>;
 
@@ -63,4 +63,4 @@ class FacetSink {
   std::size_t dropped_ = 0;
 };
 
-}  // namespace routebench
+}  // namespace routebench::models

@@ -10,7 +10,7 @@
 
 #include "model/raw_mesh.hpp"
 
-namespace routebench {
+namespace routebench::models {
 namespace {
 
 /// Closes a file descriptor at the end of a scope.
@@ -55,4 +55,4 @@ MappedFile::~MappedFile() {
   if (data_ != nullptr) ::munmap(data_, size_);
 }
 
-}  // namespace routebench
+}  // namespace routebench::models

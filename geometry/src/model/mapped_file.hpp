@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <span>
 
-namespace routebench {
+namespace routebench::models {
 
 /// A regular file mapped into memory for reading, as long as the object lives.
 class MappedFile {
@@ -25,4 +25,4 @@ class MappedFile {
   std::size_t size_ = 0;
 };
 
-}  // namespace routebench
+}  // namespace routebench::models

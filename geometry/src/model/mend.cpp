@@ -13,7 +13,7 @@
 #include "model/shells.hpp"
 #include "model/surface.hpp"
 
-namespace routebench {
+namespace routebench::models {
 namespace {
 
 using Triangle = std::array<std::uint32_t, 3>;
@@ -199,4 +199,4 @@ void mend(Mesh& mesh, const std::string& name, MeshReport& report,
   report.volume_mm3 = shells.volume;
 }
 
-}  // namespace routebench
+}  // namespace routebench::models

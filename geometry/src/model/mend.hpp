@@ -8,7 +8,7 @@
 #include "routebench/geometry/model.hpp"
 #include "routebench/geometry/types.hpp"
 
-namespace routebench {
+namespace routebench::models {
 
 /// Counts the defects of a mesh into `report`, mends what has one right answer and describes both
 /// in `warnings`.
@@ -24,4 +24,4 @@ namespace routebench {
 void mend(Mesh& mesh, const std::string& name, MeshReport& report,
           std::vector<std::string>& warnings);
 
-}  // namespace routebench
+}  // namespace routebench::models

@@ -5,50 +5,71 @@
 #include <utility>
 #include <vector>
 
+#include "model/cgal_data.hpp"
 #include "model/content_hash.hpp"
+#include "model/formats.hpp"
 #include "model/mapped_file.hpp"
 #include "model/mend.hpp"
 #include "model/model_spec.hpp"
 #include "model/placement.hpp"
 #include "model/raw_mesh.hpp"
-#include "model/stl_reader.hpp"
 #include "shapes/shapes.hpp"
 
 namespace routebench {
 namespace {
 
-RawMesh read_model(const std::string& spec, ModelSpec& parsed, const ModelOptions& options) {
+using models::MappedFile;
+using models::ModelSpec;
+using models::RawMesh;
+
+/// How messages call a model: without the parameters that say how large it shall be.
+std::string name_of(const std::string& spec, const ModelSpec& parsed) {
+  switch (parsed.scheme) {
+    case ModelSpec::Scheme::kShape:
+      return spec;
+    case ModelSpec::Scheme::kCgal:
+      return "cgal:" + parsed.subject;
+    case ModelSpec::Scheme::kFile:
+      break;
+  }
+  return parsed.subject;
+}
+
+RawMesh read_model(const ModelSpec& parsed, const models::ReadContext& context) {
   if (parsed.scheme == ModelSpec::Scheme::kShape) {
-    return {make_shape(spec, parsed.subject, parsed.query), {}, false};
+    return {shapes::make_shape(context.name, parsed.subject, parsed.query), {}, false};
   }
   if (!parsed.query.empty()) {
-    refuse_model(
-        spec, "unknown parameter '" + parsed.query.begin()->first + "'; a file knows only ?size=");
+    models::refuse_model(context.name, "unknown parameter " +
+                                           models::in_quotes(parsed.query.begin()->first) +
+                                           "; a file knows only ?size=");
+  }
+  if (parsed.scheme == ModelSpec::Scheme::kCgal) {
+    return models::read_mesh(models::read_cgal_data(context.name, parsed.subject), context);
   }
   const MappedFile file(parsed.subject);
-  return read_stl(file.bytes(), {parsed.subject, options.repair});
+  return models::read_mesh(file.bytes(), context);
 }
 
 }  // namespace
 
 Model load_model(const std::string& spec, const ModelOptions& options) {
-  ModelSpec parsed = parse_model_spec(spec);
-  const std::optional<double> size_mm = take_size_mm(spec, parsed);
-  RawMesh raw = read_model(spec, parsed, options);
+  ModelSpec parsed = models::parse_model_spec(spec);
+  const std::optional<double> size_mm = models::take_size_mm(spec, parsed);
+  const std::string name = name_of(spec, parsed);
+  RawMesh raw = read_model(parsed, {name, options.repair});
 
   Model model;
   model.spec = spec;
-  const bool made = parsed.scheme == ModelSpec::Scheme::kShape;
-  const std::string& name = made ? spec : parsed.subject;
-  mend(raw.mesh, name, model.report, raw.warnings);
-  const double scale = place(raw, size_mm, name);
-  const Bounds bounds = bounds_of(raw.mesh);
+  models::mend(raw.mesh, name, model.report, raw.warnings);
+  const double scale = models::place(raw, size_mm, name);
+  const models::Bounds bounds = models::bounds_of(raw.mesh);
   model.report.volume_mm3 *= scale * scale * scale;
   model.report.lower_mm = bounds.lower;
   model.report.upper_mm = bounds.upper;
   model.mesh = std::move(raw.mesh);
   model.warnings = std::move(raw.warnings);
-  model.content_hash = content_hash(model.mesh);
+  model.content_hash = models::content_hash(model.mesh);
   return model;
 }
 

@@ -8,7 +8,7 @@
 
 #include "model/raw_mesh.hpp"
 
-namespace routebench {
+namespace routebench::models {
 namespace {
 
 void parse_query(const std::string& spec, std::string_view text,
@@ -18,11 +18,11 @@ void parse_query(const std::string& spec, std::string_view text,
     text.remove_prefix(std::min(text.size(), item.size() + 1));
     const std::size_t equals = item.find('=');
     if (equals == std::string_view::npos || equals == 0 || equals + 1 == item.size()) {
-      refuse_model(spec, "'" + std::string(item) + "' after the question mark is not key=value");
+      refuse_model(spec, in_quotes(item) + " after the question mark is not key=value");
     }
     const std::string key(item.substr(0, equals));
     if (!query.emplace(key, item.substr(equals + 1)).second) {
-      refuse_model(spec, "key '" + key + "' is given twice");
+      refuse_model(spec, "key " + in_quotes(key) + " is given twice");
     }
   }
 }
@@ -68,4 +68,4 @@ std::optional<double> take_size_mm(const std::string& spec, ModelSpec& parsed) {
   return value;
 }
 
-}  // namespace routebench
+}  // namespace routebench::models

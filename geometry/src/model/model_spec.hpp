@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-namespace routebench {
+namespace routebench::models {
 
 /// A name taken apart: SCHEME:SUBJECT?key=value&key=value
 struct ModelSpec {
@@ -23,4 +23,4 @@ struct ModelSpec {
 /// Throws Error{kBadInput} for what is not a length between 0.01 mm and 10 m.
 [[nodiscard]] std::optional<double> take_size_mm(const std::string& spec, ModelSpec& parsed);
 
-}  // namespace routebench
+}  // namespace routebench::models

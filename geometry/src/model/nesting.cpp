@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <tuple>
 
-namespace routebench {
+namespace routebench::models {
 namespace {
 
 /// The lowest vertex of every shell that takes part: of several the one with the least y, then x.
@@ -153,4 +153,4 @@ std::vector<std::vector<std::uint32_t>> enclosing_shells(
   return around;
 }
 
-}  // namespace routebench
+}  // namespace routebench::models

@@ -8,7 +8,7 @@
 #include "model/bounds.hpp"
 #include "routebench/geometry/types.hpp"
 
-namespace routebench {
+namespace routebench::models {
 
 /// For every shell the shells that enclose it, by rising number: their bounds contain its bounds,
 /// and they wind round its lowest point.
@@ -21,4 +21,4 @@ namespace routebench {
     const Mesh& mesh, std::span<const std::uint32_t> shell_of_triangle,
     std::span<const Bounds> shell_bounds);
 
-}  // namespace routebench
+}  // namespace routebench::models

@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-namespace routebench {
+namespace routebench::models {
 namespace {
 
 constexpr double kLargestSideMm = 10'000;
@@ -81,4 +81,4 @@ double place(RawMesh& raw, std::optional<double> size_mm, const std::string& nam
   return scale;
 }
 
-}  // namespace routebench
+}  // namespace routebench::models

@@ -8,7 +8,7 @@
 #include "model/bounds.hpp"
 #include "model/raw_mesh.hpp"
 
-namespace routebench {
+namespace routebench::models {
 
 [[nodiscard]] Bounds bounds_of(const Mesh& mesh);
 
@@ -21,4 +21,4 @@ namespace routebench {
 ///         coordinates cannot tell tenths of a millimetre.
 double place(RawMesh& raw, std::optional<double> size_mm, const std::string& name);
 
-}  // namespace routebench
+}  // namespace routebench::models

@@ -5,7 +5,7 @@
 
 #include "routebench/geometry/error.hpp"
 
-namespace routebench {
+namespace routebench::models {
 
 void refuse_model(const std::string& name, const std::string& complaint) {
   std::string line = name + ": " + complaint;
@@ -29,8 +29,16 @@ std::string rounded(double value) {
   return std::string(digits.data(), end);
 }
 
+std::string in_quotes(std::string_view word) {
+  constexpr std::size_t kLongest = 40;
+  std::string text(1, '\'');
+  text += word.substr(0, kLongest);
+  text += word.size() > kLongest ? "...'" : "'";
+  return text;
+}
+
 std::string counted(std::size_t count, const char* noun) {
   return std::to_string(count) + ' ' + noun + (count == 1 ? "" : "s");
 }
 
-}  // namespace routebench
+}  // namespace routebench::models

@@ -3,11 +3,12 @@
 
 #include <cstddef>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "routebench/geometry/types.hpp"
 
-namespace routebench {
+namespace routebench::models {
 
 /// A mesh as a file has it: exactly welded, every vertex used and finite, nothing mended or placed.
 struct RawMesh {
@@ -27,6 +28,7 @@ struct ReadContext {
 
 /// Triangles that can be told apart with 32-bit numbers for their corners.
 inline constexpr std::size_t kMostTriangles = 0xFFFFFFFEU / 3;
+inline constexpr std::size_t kMostVertices = 0xFFFFFFFEU;
 
 /// Throws Error{kBadInput} if there are more than kMostTriangles.
 void refuse_too_many_triangles(const std::string& name, std::size_t triangles);
@@ -34,7 +36,10 @@ void refuse_too_many_triangles(const std::string& name, std::size_t triangles);
 /// A number for a message, with six digits at most.
 [[nodiscard]] std::string rounded(double value);
 
+/// A word of the input in quotes, cut where it gets long.
+[[nodiscard]] std::string in_quotes(std::string_view word);
+
 /// "1 facet", "2 facets".
 [[nodiscard]] std::string counted(std::size_t count, const char* noun);
 
-}  // namespace routebench
+}  // namespace routebench::models

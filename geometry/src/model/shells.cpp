@@ -10,7 +10,7 @@
 #include "model/bounds.hpp"
 #include "model/nesting.hpp"
 
-namespace routebench {
+namespace routebench::models {
 namespace {
 
 Point3 minus(const Point3& a, const Point3& b) noexcept {
@@ -139,4 +139,4 @@ ShellReport turn_inside_out_shells(Mesh& mesh, const Surface& surface) {
   return report;
 }
 
-}  // namespace routebench
+}  // namespace routebench::models

@@ -6,7 +6,7 @@
 #include "model/surface.hpp"
 #include "routebench/geometry/types.hpp"
 
-namespace routebench {
+namespace routebench::models {
 
 struct ShellReport {
   double volume = 0;       ///< enclosed by all shells, cavities taken off
@@ -25,4 +25,4 @@ struct ShellReport {
 ///       and a shell whose lowest point lies over or under it.
 ShellReport turn_inside_out_shells(Mesh& mesh, const Surface& surface);
 
-}  // namespace routebench
+}  // namespace routebench::models

@@ -9,7 +9,7 @@
 #include "model/facet_sink.hpp"
 #include "model/stl_reader.hpp"
 
-namespace routebench {
+namespace routebench::models {
 namespace {
 
 /// Whether a word is a keyword, in any case. `keyword` is lower case.
@@ -154,8 +154,8 @@ class AsciiStl {
     const std::string_view next = peek_word();
     const bool fourth = !next.empty() && (next[0] == '-' || (next[0] >= '0' && next[0] <= '9'));
     if (fourth) {
-      refuse(this_facet(next.data()) + ": a corner with more than three numbers ('" +
-             std::string(next.substr(0, 40)) + "')");
+      refuse(this_facet(next.data()) + ": a corner with more than three numbers (" +
+             in_quotes(next) + ")");
     }
     return true;
   }
@@ -169,7 +169,7 @@ class AsciiStl {
     const auto [stop, error] = std::from_chars(first, last, value);
     if (error == std::errc() && stop == last) return value;
     if (error == std::errc::result_out_of_range && stop == last) return out_of_range(first, last);
-    const std::string shown = "'" + std::string(word_.substr(0, 40)) + "'";
+    const std::string shown = in_quotes(word_);
     if (word_.find(',') != std::string_view::npos) {
       refuse(this_facet(first) + ": " + shown +
              " is written with a comma; a number must have a decimal point");
@@ -204,4 +204,4 @@ RawMesh read_ascii_stl(std::span<const char> bytes, const ReadContext& context) 
   return AsciiStl(bytes, context).read();
 }
 
-}  // namespace routebench
+}  // namespace routebench::models

@@ -8,7 +8,7 @@
 #include "model/facet_sink.hpp"
 #include "model/stl_reader.hpp"
 
-namespace routebench {
+namespace routebench::models {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "binary STL is little-endian");
@@ -86,11 +86,13 @@ RawMesh read_binary_stl(std::span<const char> bytes, const ReadContext& context)
   return raw;
 }
 
+bool is_exact_binary_stl(std::span<const char> bytes) {
+  return bytes.size() >= kHeaderBytes &&
+         bytes.size() == kHeaderBytes + std::size_t{count_field(bytes)} * kFacetBytes;
+}
+
 StlKind stl_kind(std::span<const char> bytes) {
-  if (bytes.size() >= kHeaderBytes &&
-      bytes.size() == kHeaderBytes + std::size_t{count_field(bytes)} * kFacetBytes) {
-    return StlKind::kBinary;
-  }
+  if (is_exact_binary_stl(bytes)) return StlKind::kBinary;
   // Text has no zero bytes. A binary file has some in its count, its normals or its attributes.
   constexpr std::size_t kLookAt = 4096;
   std::string_view head(bytes.data(), std::min(bytes.size(), kLookAt));
@@ -120,4 +122,4 @@ RawMesh read_stl(std::span<const char> bytes, const ReadContext& context) {
                "(begins with the word solid)");
 }
 
-}  // namespace routebench
+}  // namespace routebench::models

@@ -5,12 +5,15 @@
 
 #include "model/raw_mesh.hpp"
 
-namespace routebench {
+namespace routebench::models {
 
 /// What the bytes of a file that claims to be an STL are.
 enum class StlKind { kBinary, kAscii, kNeither };
 
-/// Decides by the size 84 + 50 n first, since binary headers may read "solid"; then by the bytes
+/// Whether the size is exactly 84 bytes and 50 for every facet that the count field announces.
+[[nodiscard]] bool is_exact_binary_stl(std::span<const char> bytes);
+
+/// Decides by that size first, since binary headers may read "solid"; then by the bytes
 /// that text never has.
 [[nodiscard]] StlKind stl_kind(std::span<const char> bytes);
 
@@ -27,4 +30,4 @@ enum class StlKind { kBinary, kAscii, kNeither };
 [[nodiscard]] RawMesh read_binary_stl(std::span<const char> bytes, const ReadContext& context);
 [[nodiscard]] RawMesh read_ascii_stl(std::span<const char> bytes, const ReadContext& context);
 
-}  // namespace routebench
+}  // namespace routebench::models

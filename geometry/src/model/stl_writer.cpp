@@ -30,7 +30,7 @@ Float3 normal_of(const Point3& a, const Point3& b, const Point3& c) noexcept {
 
 std::string stl_bytes(const Mesh& mesh) {
   if (mesh.triangles.size() > std::numeric_limits<std::uint32_t>::max()) {
-    refuse_model("binary STL", "cannot hold more than 4294967295 triangles");
+    models::refuse_model("binary STL", "cannot hold more than 4294967295 triangles");
   }
   constexpr std::size_t kHeaderText = 80;
   const auto count = static_cast<std::uint32_t>(mesh.triangles.size());
@@ -60,7 +60,7 @@ void write_stl(const std::filesystem::path& path, const Mesh& mesh) {
   std::ofstream file(path, std::ios::binary | std::ios::trunc);
   file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   file.close();
-  if (!file) refuse_model(path.string(), "cannot be written");
+  if (!file) models::refuse_model(path.string(), "cannot be written");
 }
 
 }  // namespace routebench

@@ -7,7 +7,7 @@
 #include "model/edge_table.hpp"
 #include "model/triangle_sets.hpp"
 
-namespace routebench {
+namespace routebench::models {
 namespace {
 
 using Sides = std::span<const EdgeTable::Side>;
@@ -179,4 +179,4 @@ class Survey {
 
 Surface survey(const Mesh& mesh) { return Survey(mesh).run(); }
 
-}  // namespace routebench
+}  // namespace routebench::models

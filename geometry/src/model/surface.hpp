@@ -7,7 +7,7 @@
 
 #include "routebench/geometry/types.hpp"
 
-namespace routebench {
+namespace routebench::models {
 
 /// Counts of a surface and its parts.
 ///
@@ -34,4 +34,4 @@ struct Surface {
 /// Cost  nearly linear; about 30 bytes a triangle for the time of the call.
 [[nodiscard]] Surface survey(const Mesh& mesh);
 
-}  // namespace routebench
+}  // namespace routebench::models

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-namespace routebench {
+namespace routebench::models {
 
 /// Union-find in which every member knows whether it runs with or against its set's first member.
 class TriangleSets {
@@ -57,4 +57,4 @@ class TriangleSets {
   std::vector<std::uint8_t> against_;
 };
 
-}  // namespace routebench
+}  // namespace routebench::models

@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-namespace routebench {
+namespace routebench::models {
 namespace {
 
 std::uint32_t tag_of(const Point3& p) noexcept {
@@ -85,4 +85,4 @@ void weld_mesh(Mesh& mesh) {
   mesh.vertices = welder.take_vertices();
 }
 
-}  // namespace routebench
+}  // namespace routebench::models

@@ -9,7 +9,7 @@
 
 #include "routebench/geometry/types.hpp"
 
-namespace routebench {
+namespace routebench::models {
 
 /// Gives equal points equal numbers, in order of first appearance.
 ///
@@ -47,4 +47,4 @@ class VertexWelder {
 /// Welds the vertices of an indexed mesh, in place, and drops those that no triangle uses.
 void weld_mesh(Mesh& mesh);
 
-}  // namespace routebench
+}  // namespace routebench::models

@@ -1,7 +1,7 @@
 #include "shapes/shapes.hpp"
 #include "shapes/subdivide.hpp"
 
-namespace routebench {
+namespace routebench::shapes {
 
 Mesh make_box(ShapeQuery& query) {
   const double x = query.mm("x", 20);
@@ -26,4 +26,4 @@ Mesh make_box(ShapeQuery& query) {
   return subdivide_to(box, triangles);
 }
 
-}  // namespace routebench
+}  // namespace routebench::shapes

@@ -8,7 +8,7 @@
 
 #include "shapes/shapes.hpp"
 
-namespace routebench {
+namespace routebench::shapes {
 namespace {
 
 /// How finely a surface is cut: pieces for a length.
@@ -143,4 +143,4 @@ Mesh make_torus(ShapeQuery& query) {
   return revolve(profile, true, fine.turn(outer), outer);
 }
 
-}  // namespace routebench
+}  // namespace routebench::shapes

@@ -8,12 +8,14 @@
 #include "model/raw_mesh.hpp"
 #include "routebench/geometry/nearest_name.hpp"
 
-namespace routebench {
+namespace routebench::shapes {
 
 ShapeQuery::ShapeQuery(std::string spec, std::map<std::string, std::string> values)
     : spec_(std::move(spec)), values_(std::move(values)) {}
 
-void ShapeQuery::refuse(const std::string& complaint) const { refuse_model(spec_, complaint); }
+void ShapeQuery::refuse(const std::string& complaint) const {
+  models::refuse_model(spec_, complaint);
+}
 
 const std::string* ShapeQuery::given(const char* key) {
   known_.emplace_back(key);
@@ -32,8 +34,8 @@ double ShapeQuery::number(const char* key, double by_default, double lowest, dou
   const auto [stop, error] = std::from_chars(text->data(), text->data() + text->size(), value);
   const bool read = error == std::errc() && stop == text->data() + text->size();
   if (!read || !(value >= lowest && value <= highest)) {
-    refuse(std::string(key) + '=' + *text + " must be a number in " + rounded(lowest) + ".." +
-           rounded(highest));
+    refuse(std::string(key) + '=' + *text + " must be a number in " + models::rounded(lowest) +
+           ".." + models::rounded(highest));
   }
   return value;
 }
@@ -80,9 +82,10 @@ void ShapeQuery::finish() const {
     std::sort(names.begin(), names.end());
     std::string list;
     for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
-    refuse("unknown parameter '" + key + "'" + (near ? ", did you mean '" + *near + "'?" : "") +
-           " (known: " + list + ")");
+    refuse("unknown parameter " + models::in_quotes(key) +
+           (near ? ", did you mean " + models::in_quotes(*near) + "?" : "") + " (known: " + list +
+           ")");
   }
 }
 
-}  // namespace routebench
+}  // namespace routebench::shapes

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace routebench {
+namespace routebench::shapes {
 
 class ShapeQuery {
  public:
@@ -42,4 +42,4 @@ class ShapeQuery {
   std::vector<std::string> known_;
 };
 
-}  // namespace routebench
+}  // namespace routebench::shapes

@@ -7,7 +7,7 @@
 #include "model/raw_mesh.hpp"
 #include "routebench/geometry/nearest_name.hpp"
 
-namespace routebench {
+namespace routebench::shapes {
 namespace {
 
 struct Maker {
@@ -36,12 +36,13 @@ Mesh make_shape(const std::string& spec, const std::string& name,
       list += (list.empty() ? "" : ", ") + names.back();
     }
     const auto near = nearest_name(name, names);
-    refuse_model(spec, "unknown shape '" + name + "'" +
-                           (near ? ", did you mean '" + *near + "'?" : "") + " (known: " + list +
-                           ")");
+    models::refuse_model(spec,
+                         "unknown shape " + models::in_quotes(name) +
+                             (near ? ", did you mean " + models::in_quotes(*near) + "?" : "") +
+                             " (known: " + list + ")");
   }
   ShapeQuery query(spec, parameters);
   return maker->make(query);
 }
 
-}  // namespace routebench
+}  // namespace routebench::shapes

@@ -7,7 +7,7 @@
 #include "routebench/geometry/types.hpp"
 #include "shapes/shape_query.hpp"
 
-namespace routebench {
+namespace routebench::shapes {
 
 /// Makes the shape `name`. Its bounding box begins at the origin.
 ///
@@ -24,4 +24,4 @@ namespace routebench {
 [[nodiscard]] Mesh make_sphere(ShapeQuery& query);
 [[nodiscard]] Mesh make_torus(ShapeQuery& query);
 
-}  // namespace routebench
+}  // namespace routebench::shapes

@@ -9,13 +9,15 @@
 
 #include "model/edge_table.hpp"
 
-namespace routebench {
+namespace routebench::shapes {
 namespace {
 
 /// The point at a share of the way from a to b.
 Point3 between(const Point3& a, const Point3& b, double share) noexcept {
   return {a.x + (b.x - a.x) * share, a.y + (b.y - a.y) * share, a.z + (b.z - a.z) * share};
 }
+
+using models::EdgeTable;
 
 class Subdivision {
  public:
@@ -112,4 +114,4 @@ Mesh subdivide_to(const Mesh& mesh, std::size_t triangles) {
   return subdivide(mesh, static_cast<std::size_t>(std::max(1.0, std::round(std::sqrt(ratio)))));
 }
 
-}  // namespace routebench
+}  // namespace routebench::shapes

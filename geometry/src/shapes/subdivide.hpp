@@ -5,7 +5,7 @@
 
 #include "routebench/geometry/types.hpp"
 
-namespace routebench {
+namespace routebench::shapes {
 
 /// Cuts every triangle into parts x parts of the same form. Neighbours stay joined: a point on an
 /// edge is computed from the edge alone.
@@ -14,4 +14,4 @@ namespace routebench {
 /// subdivide() with the number of parts that comes nearest to a count of triangles.
 [[nodiscard]] Mesh subdivide_to(const Mesh& mesh, std::size_t triangles);
 
-}  // namespace routebench
+}  // namespace routebench::shapes

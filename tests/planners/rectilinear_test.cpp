@@ -1,0 +1,203 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "planning.hpp"
+#include "routebench/geometry/grid.hpp"
+
+namespace routebench {
+namespace {
+
+using test::context_for;
+using test::kSpacing;
+using test::kWidth;
+using test::layer_of;
+using test::length_mm;
+using test::word;
+
+Route plan(const Layer& layer, const PlanContext& context, const ParamSet& params = {}) {
+  return test::plan("rectilinear", layer, context, params);
+}
+
+Layer square(int index = 0) { return layer_of({{test::rectangle(0, 0, 10, 10), {}}}, index); }
+
+const ParamSet kLevelLoose{{"angle_deg", 0.0}, {"link", word("none")}};
+
+/// Heights of level strokes, sorted.
+std::vector<double> heights(const Route& route) {
+  std::vector<double> ys;
+  for (const Stroke& stroke : route.strokes) {
+    EXPECT_EQ(stroke.points.front().y, stroke.points.back().y);
+    ys.push_back(stroke.points.front().y);
+  }
+  std::sort(ys.begin(), ys.end());
+  return ys;
+}
+
+TEST(Rectilinear, SparseLinesOfASquareAreWhereTheyMustBe) {
+  // Lines kSpacing / 0.25 = 1.75 apart from the origin, half a line away from the walls.
+  const Route route = plan(square(), context_for(0, 0.25), kLevelLoose);
+  EXPECT_EQ(heights(route), (std::vector<double>{1.75, 3.5, 5.25, 7, 8.75}));
+  for (const Stroke& stroke : route.strokes) {
+    EXPECT_EQ(std::min(stroke.points[0].x, stroke.points[1].x), 0.25);
+    EXPECT_EQ(std::max(stroke.points[0].x, stroke.points[1].x), 9.75);
+    EXPECT_EQ(stroke.width_mm, kWidth);
+  }
+}
+
+TEST(Rectilinear, NearestFirstMakesAZigzag) {
+  const Route route = plan(square(), context_for(0, 0.25), kLevelLoose);
+  for (std::size_t i = 1; i < route.strokes.size(); ++i)
+    EXPECT_EQ(distance(route.strokes[i - 1].points.back(), route.strokes[i].points.front()), 1.75);
+}
+
+TEST(Rectilinear, DirectionTurnsOnOddLayersUnlessToldNotTo) {
+  const PlanContext context = context_for(0, 0.25);
+  ParamSet params = kLevelLoose;
+  const Route odd = plan(square(1), context, params);
+  for (const Stroke& stroke : odd.strokes) EXPECT_EQ(stroke.points[0].x, stroke.points[1].x);
+  params["alternate"] = false;
+  EXPECT_EQ(plan(square(1), context, params), plan(square(0), context, params));
+}
+
+TEST(Rectilinear, LinesMeetFromLayerToLayer) {
+  PlanContext context = context_for(0, 0.2);
+  context.origin = {0.3, 0.7};
+  const Layer other = layer_of({{test::rectangle(3, 2.1, 40, 33.3), {}}});
+  for (const Layer& layer : {square(), other}) {
+    const double distance_mm = kSpacing / 0.2;
+    for (const double y : heights(plan(layer, context, kLevelLoose))) {
+      const double lines = (y - snap(0.7)) / distance_mm;
+      EXPECT_NEAR(lines, std::round(lines), 1e-5);
+    }
+  }
+}
+
+TEST(Rectilinear, GridLaysBothDirectionsAtHalfTheDensityEach) {
+  ParamSet params = kLevelLoose;
+  params["grid"] = true;
+  const Route route = plan(square(), context_for(0, 0.5), params);
+  // Lines 2 x kSpacing / 0.5 = 1.75 apart: five each way.
+  const auto is_level = [](const Stroke& s) { return s.points[0].y == s.points[1].y; };
+  ASSERT_EQ(route.strokes.size(), 10U);
+  EXPECT_EQ(std::count_if(route.strokes.begin(), route.strokes.end(), is_level), 5);
+  EXPECT_NEAR(length_mm(route), 10 * 9.5, 1e-9);
+  // A dense layer gets one direction.
+  params["trace"] = false;
+  for (const Stroke& stroke : plan(square(), context_for(0, 1), params).strokes)
+    EXPECT_TRUE(is_level(stroke));
+}
+
+TEST(Rectilinear, DenseLinesAreSpreadEvenlyOverTheRegion) {
+  for (const double side : {2.0, 3.1, 5.0, 7.77, 10.0}) {
+    const Layer layer = layer_of({{test::rectangle(0, 0, side, side), {}}});
+    const std::vector<double> ys = heights(plan(layer, context_for(0, 1), kLevelLoose));
+    ASSERT_GE(ys.size(), 2U);
+    // The outermost beads reach the edge, but for the wave that offsets may have.
+    EXPECT_NEAR(ys.front(), kWidth / 2, 0.011);
+    EXPECT_NEAR(ys.back(), side - kWidth / 2, 0.011);
+    const double gap = (ys.back() - ys.front()) / static_cast<double>(ys.size() - 1);
+    EXPECT_LE(gap, kWidth);
+    EXPECT_GE(gap, 0.75 * kSpacing);
+    for (std::size_t i = 1; i < ys.size(); ++i) EXPECT_NEAR(ys[i] - ys[i - 1], gap, 1e-5);
+  }
+}
+
+TEST(Rectilinear, WithoutFitDenseLinesLieASpacingApart) {
+  ParamSet params = kLevelLoose;
+  params["fit"] = false;
+  params["trace"] = false;
+  const std::vector<double> ys = heights(plan(square(), context_for(0, 1), params));
+  ASSERT_EQ(ys.size(), 22U);  // 1 x 0.4375 to 22 x 0.4375, within 0.25 to 9.75
+  for (std::size_t i = 0; i < ys.size(); ++i)
+    EXPECT_EQ(ys[i], static_cast<double>(i + 1) * kSpacing);
+}
+
+TEST(Rectilinear, AllSearchesGiveTheSameRoute) {
+  for (const Layer& layer : test::trial_layers())
+    for (const double density : {1.0, 0.3}) {
+      const PlanContext context = context_for(0, density);
+      const Route bucket = plan(layer, context, {{"search", word("bucket")}});
+      EXPECT_EQ(plan(layer, context, {{"search", word("sweep")}}), bucket);
+      EXPECT_EQ(plan(layer, context, {{"search", word("naive")}}), bucket);
+    }
+}
+
+TEST(Rectilinear, LinkedAlongTheBoundaryASquareIsOneStroke) {
+  const Route route = plan(square(), context_for(0, 0.25), {{"angle_deg", 0.0}});
+  ASSERT_EQ(route.strokes.size(), 1U);
+  EXPECT_NEAR(length_mm(route), 5 * 9.5 + 4 * 1.75, 1e-9);
+}
+
+TEST(Rectilinear, LongLinksAreNotMade) {
+  const ParamSet params{{"angle_deg", 0.0}, {"max_link", 0.99}};
+  EXPECT_EQ(plan(square(), context_for(0, 0.25), params).strokes.size(), 5U);
+}
+
+TEST(Rectilinear, LinksSaveStrokesAndLoseNoLine) {
+  for (const Layer& layer : test::trial_layers()) {
+    const PlanContext context = context_for(0, 0.3);
+    const Route loose = plan(layer, context, {{"link", word("none")}});
+    for (const char* link : {"flows", "boundary"}) {
+      const Route linked = plan(layer, context, {{"link", word(link)}});
+      EXPECT_LE(linked.strokes.size(), loose.strokes.size());
+      EXPECT_GE(length_mm(linked), length_mm(loose) - 1e-6);
+    }
+  }
+}
+
+TEST(Rectilinear, EndsCutAtTheOutlineArePulledInAlongTheLine) {
+  ParamSet params = kLevelLoose;
+  params["ends"] = word("along");
+  params["end_gap"] = 2.0;
+  const Layer slanted = layer_of({{{{0, 0}, {20, 0}, {10, 10}, {0, 10}}, {}}});
+  for (const Stroke& stroke : plan(slanted, context_for(0, 0.25), params).strokes) {
+    const auto [left, right] = std::minmax(stroke.points[0].x, stroke.points[1].x);
+    EXPECT_NEAR(left, 2 * kWidth, 1e-5);
+    EXPECT_NEAR(right, 20 - stroke.points[0].y - 2 * kWidth, 1e-5);
+  }
+}
+
+TEST(Rectilinear, ShortLinesAreLeftOut) {
+  ParamSet params = kLevelLoose;
+  params["min_length_mm"] = 5.0;
+  const Layer triangle = layer_of({{{{0, 0}, {20, 0}, {0, 20}}, {}}});
+  const Route route = plan(triangle, context_for(0, 0.25), params);
+  ASSERT_FALSE(route.strokes.empty());
+  for (const Stroke& stroke : route.strokes)
+    EXPECT_GE(distance(stroke.points[0], stroke.points[1]), 5 - 1e-5);
+}
+
+/// What two walls leave of an outline.
+Polygons inside_of(Polygons outline) {
+  for (int wall = 0; wall < 2; ++wall) outline = offset(outline, -kSpacing);
+  return outline;
+}
+
+/// Walls and dense fill as a contender lays them.
+Route dense_layer(const Polygons& outline, const ParamSet& fill) {
+  const PlanContext context = context_for(2, 1);
+  Route route = test::plan("greedy_shell", layer_of(outline), context);
+  const Route inner = plan(layer_of(inside_of(outline)), context, fill);
+  route.strokes.insert(route.strokes.end(), inner.strokes.begin(), inner.strokes.end());
+  return route;
+}
+
+TEST(Rectilinear, DenseLayersAreCovered) {
+  std::vector<Polygons> outlines{
+      test::blob(),
+      {{test::rectangle(0, 0, 10, 10), {}}},
+      {{test::circle({10, 10}, 10, 64), {test::reversed(test::circle({10, 10}, 6, 64))}}}};
+  for (const Polygons& outline : outlines)
+    for (const double angle : {0.0, 45.0}) {
+      const Route route = dense_layer(outline, {{"angle_deg", angle}});
+      EXPECT_GE(test::share_under_beads(inside_of(outline), route), 0.97) << angle;
+      // Neither is much laid twice: the material is what the area takes, and little more.
+      EXPECT_LE(length_mm(route) * kSpacing, 1.08 * area_mm2(outline)) << angle;
+    }
+}
+
+}  // namespace
+}  // namespace routebench
