@@ -249,7 +249,7 @@ TEST_P(JudgeGate, TravelsExtruded) {
   EXPECT_EQ(*joined.totals[metric_index("travels")], kLayers - 1);
 }
 
-TEST_P(JudgeGate, OneLayerOfAHundredLeftOut) {
+TEST_P(JudgeGate, OneLayerOfTwoHundredLeftOut) {
   const std::size_t walls = test::walls(part().outline, task_).strokes.size();
   const Judge judge_of_all(task_, {});
   // All of the layer, or its filling only.
@@ -257,9 +257,9 @@ TEST_P(JudgeGate, OneLayerOfAHundredLeftOut) {
     const Judged once = judge(part(), task_, honest, [kept](Route& route, int layer) {
       if (layer == 1) route.strokes.resize(kept);
     });
-    std::vector<LayerScore> layers(100, once.layers[2]);
+    std::vector<LayerScore> layers(200, once.layers[2]);
     EXPECT_EQ(judge_of_all.verdict(judge_of_all.total(layers)).outcome, Outcome::kValid);
-    layers[50] = once.layers[1];
+    layers[100] = once.layers[1];
     const Verdict verdict = judge_of_all.verdict(judge_of_all.total(layers));
     EXPECT_EQ(verdict.outcome, Outcome::kOffTask);
     EXPECT_TRUE(verdict.reason.starts_with("worst_layer ")) << verdict.reason;
