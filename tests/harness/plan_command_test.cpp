@@ -1,6 +1,7 @@
 #include <set>
 
 #include "gcode_reader.hpp"
+#include "models.hpp"
 #include "program.hpp"
 #include "routebench/harness/metrics.hpp"
 
@@ -87,9 +88,11 @@ TEST_F(PlanCommand, ThreadsChangeNothing) {
   EXPECT_EQ(without_times(one), without_times(three));
 }
 
-TEST_F(PlanCommand, AnIndependentReaderOfTheGcodeFindsWhatTheJudgeFound) {
-  for (const char* model : {"shape:torus", "shape:sphere", "shape:box?size=12"}) {
-    const ProgramRun planned = plan(model, {"--json", "-", "--gcode", in_folder("a.gcode")});
+class PlanGcode : public PlanCommand {
+ protected:
+  void expect_agreement(const std::string& model, std::vector<std::string> more = {}) {
+    more.insert(more.end(), {"--json", "-", "--gcode", in_folder("a.gcode")});
+    const ProgramRun planned = plan(model, more);
     ASSERT_LE(planned.exit_code, 1) << planned.err;
     const json totals = planned.json()["totals"];
     const test::GcodeRun run = test::read_gcode(test::content_of(in_folder("a.gcode")));
@@ -102,6 +105,20 @@ TEST_F(PlanCommand, AnIndependentReaderOfTheGcodeFindsWhatTheJudgeFound) {
     EXPECT_NEAR(run.filament_mm * section, total("filament_mm3"), 1e-3 * total("filament_mm3"));
     EXPECT_NEAR(run.pulled_mm, 0, 1e-9) << "what was pulled comes back";
   }
+};
+
+TEST_F(PlanGcode, AnIndependentReaderFindsWhatTheJudgeFound) {
+  for (const char* model : {"shape:torus", "shape:sphere", kModel}) expect_agreement(model);
+}
+
+TEST_F(PlanGcode, AlsoOnRealPartsUnderEveryPolicy) {
+  ROUTEBENCH_MODELS_OR_SKIP(models);
+  const std::string model = (models / "islands" / "hundred_cubes.stl").string();
+  for (const char* policy : {"length", "length_and_crossing", "manhattan"})
+    for (const char* order : {"island", "stage"})
+      expect_agreement(model,
+                       {"--layers", "2..4", "--order", order, "--printer",
+                        std::string("retract_policy=") + policy, "--printer", "lift_mm=0.4"});
 }
 
 TEST_F(PlanCommand, LayersOfAFileScoreLikeTheModelTheyCameFrom) {
