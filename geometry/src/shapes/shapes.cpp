@@ -16,10 +16,12 @@ struct Maker {
 };
 
 constexpr std::array kMakers{
-    Maker{"box", make_box},
-    Maker{"cylinder", make_cylinder},
-    Maker{"sphere", make_sphere},
-    Maker{"torus", make_torus},
+    Maker{"box", make_box},       Maker{"cylinder", make_cylinder},
+    Maker{"sphere", make_sphere}, Maker{"torus", make_torus},
+    Maker{"hotend", make_hotend}, Maker{"bracket", make_bracket},
+    Maker{"gear", make_gear},     Maker{"comb", make_comb},
+    Maker{"text", make_text},     Maker{"islands", make_islands},
+    Maker{"gyroid", make_gyroid}, Maker{"voronoi", make_voronoi},
 };
 
 }  // namespace

@@ -23,5 +23,13 @@ namespace routebench::shapes {
 [[nodiscard]] Mesh make_cylinder(ShapeQuery& query);
 [[nodiscard]] Mesh make_sphere(ShapeQuery& query);
 [[nodiscard]] Mesh make_torus(ShapeQuery& query);
+[[nodiscard]] Mesh make_hotend(ShapeQuery& query);
+[[nodiscard]] Mesh make_gear(ShapeQuery& query);
+[[nodiscard]] Mesh make_comb(ShapeQuery& query);
+[[nodiscard]] Mesh make_bracket(ShapeQuery& query);
+[[nodiscard]] Mesh make_islands(ShapeQuery& query);
+[[nodiscard]] Mesh make_text(ShapeQuery& query);
+[[nodiscard]] Mesh make_gyroid(ShapeQuery& query);
+[[nodiscard]] Mesh make_voronoi(ShapeQuery& query);
 
 }  // namespace routebench::shapes
