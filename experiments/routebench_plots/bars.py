@@ -11,7 +11,7 @@ from matplotlib.patches import Rectangle
 from .axis import axis_label, number_ticks
 from .quantities import Scale, format_number, scale_for
 from .results import TIMED_METRICS, Item, Metric, Results, Slot, Value
-from .sheet import MARGIN, Sheet
+from .sheet import MARGIN, Sheet, even_columns
 from .style import (
     ABSENT,
     MUTED,
@@ -24,7 +24,7 @@ from .style import (
     outcome_look,
 )
 from .tally import Tally
-from .text import text_height, text_width, wrap, wrapped
+from .text import POINTS_PER_INCH, text_height, text_width, wrap, wrapped
 
 _LABEL_WIDTH = 1.9
 _PANEL_WIDTHS = (1.6, 3.2)
@@ -34,6 +34,8 @@ _BAR = 0.7
 """Thickness of a bar, in pitches."""
 _AXIS_HEIGHT = 0.5
 """Below a panel, for the numbers and the name of its axis."""
+_LABEL_GAP = 0.15
+"""Between the names and the first panel."""
 _TEXT_GAP = 0.04
 """Between the end of a bar and its number."""
 
@@ -47,6 +49,11 @@ class Layout:
     panel_width: float
     panel_height: float
     label_width: float
+
+    def width(self, columns: int) -> float:
+        """Of a page with so many columns of panels."""
+        labels = self.label_width + _LABEL_GAP
+        return 2 * MARGIN + labels + columns * self.panel_width
 
     @property
     def models_per_page(self) -> int:
@@ -62,9 +69,9 @@ def layout_for(results: Results) -> Layout:
     ]
     label_width = max(text_width(s, TEXT_SIZE) for ls in lines for s in ls)
     least, most = _PANEL_WIDTHS
-    room = PAGE_WIDTH - 2 * MARGIN - label_width - 0.15
+    room = PAGE_WIDTH - 2 * MARGIN - label_width - _LABEL_GAP
     columns = min(len(results.models), _MOST_COLUMNS, int(room / least))
-    columns = _even_columns(len(results.models), columns)
+    columns = even_columns(len(results.models), columns)
     panel_width = min(most, room / columns)
     pitch = max(
         _LEAST_PITCH, text_height(max(map(len, lines)), TEXT_SIZE) + 0.05
@@ -83,12 +90,6 @@ def layout_for(results: Results) -> Layout:
         panel_height=height,
         label_width=label_width,
     )
-
-
-def _even_columns(panels: int, most: int) -> int:
-    """The fewest columns that need no more rows than `most` would."""
-    rows = -(-panels // most)
-    return -(-panels // rows)
 
 
 def draw(
@@ -112,7 +113,10 @@ def draw(
         for place, slot in slots.items()
         if (value := results.value(slot, metric)) is not None
     }
-    scale = scale_for(metric, (value.high for value in values.values()))
+    # The same unit on all pages.
+    scale = scale_for(
+        metric, (value.high for value in results.all_values(setting, metric))
+    )
     tally = Tally()
     for place, slot in slots.items():
         tally.add(slot, None if place in values else "without a value")
@@ -120,10 +124,7 @@ def draw(
     columns = min(layout.columns, len(models))
     rows = -(-len(models) // columns)
     sheet = Sheet(
-        width=2 * MARGIN
-        + layout.label_width
-        + 0.15
-        + columns * layout.panel_width,
+        width=layout.width(columns),
         body_height=rows * layout.panel_height,
         title=title,
         notes=_notes(results, setting, metric, values, tally),
@@ -183,7 +184,7 @@ def _draw_panel(
         axes.annotate(
             texts[place],
             (max(0.0, scale(value.high)), place),
-            xytext=(_TEXT_GAP * 72, 0),
+            xytext=(_TEXT_GAP * POINTS_PER_INCH, 0),
             textcoords="offset points",
             va="center",
             size=SMALL_SIZE,
@@ -242,7 +243,7 @@ def _draw_absence(axes: Axes, place: int, slot: Slot) -> None:
         words,
         (0, place),
         xycoords=axes.get_yaxis_transform(),
-        xytext=(_TEXT_GAP * 72, 0),
+        xytext=(_TEXT_GAP * POINTS_PER_INCH, 0),
         textcoords="offset points",
         va="center",
         size=SMALL_SIZE,

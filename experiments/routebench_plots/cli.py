@@ -8,7 +8,8 @@ import shutil
 import signal
 import sys
 import tempfile
-from collections.abc import Iterator, Sequence
+import time
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import NoReturn
@@ -74,8 +75,8 @@ def _run(arguments: Sequence[str] | None) -> list[Path]:
     with Results(database) as results:
         names = options.metrics.split(",") if options.metrics else None
         metrics = chosen_metrics(results, names)
-        with _staging(out) as folder:
-            written = draw_all(results, metrics, folder, formats)
+        with _staging(out) as folder, _progress() as report:
+            written = draw_all(results, metrics, folder, formats, report)
             _publish(folder, out, written)
     return [out / name for name in written]
 
@@ -97,6 +98,27 @@ def _formats(text: str) -> list[str]:
                 f"--formats {text}: '{name}' is none of {', '.join(FORMATS)}"
             )
     return formats
+
+
+@contextmanager
+def _progress() -> Iterator[Callable[[int, int], None]]:
+    """A line on stderr that comes and goes; nothing if no one looks on."""
+    start = time.monotonic()
+
+    def report(done: int, total: int) -> None:
+        left = (time.monotonic() - start) / done * (total - done)
+        _show(f"drew {done} of {total} figures, about {left:.0f} s left")
+
+    try:
+        yield report
+    finally:
+        _show("")
+
+
+def _show(text: str) -> None:
+    """Puts text in the place of the terminal's last line."""
+    if sys.stderr.isatty():
+        print(f"\r\033[K{text}", end="", file=sys.stderr, flush=True)
 
 
 @contextmanager

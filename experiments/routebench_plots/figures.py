@@ -101,16 +101,20 @@ def draw_all(
     metrics: Sequence[Metric],
     folder: Path,
     formats: Sequence[str],
+    report: Callable[[int, int], None],
 ) -> list[str]:
     """Writes all figures and tables; returns file names in that order.
 
-    Equal databases make equal bytes.
+    Equal databases make equal bytes. `report` hears after each figure how
+    many are done, and of how many.
     """
     written = []
     with applied():
-        for figure in figures(results, metrics):
+        planned = list(figures(results, metrics))
+        for done, figure in enumerate(planned, start=1):
             figure.draw().save(folder, figure.stem, formats)
             written += [f"{figure.stem}.{ending}" for ending in formats]
+            report(done, len(planned))
     made = tables.tables(results, metrics)
     for name, text in (
         (

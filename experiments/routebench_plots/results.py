@@ -183,12 +183,23 @@ class Results:
             statistics.median(found), min(found), max(found), len(found)
         )
 
+    def all_values(self, setting: Item, metric: Metric) -> list[Value]:
+        """The metric of every slot of a setting that has it."""
+        return [
+            value
+            for model in self.models
+            for contender in self.contenders
+            if (
+                value := self.value(
+                    self.slot(setting, model, contender), metric
+                )
+            )
+            is not None
+        ]
+
     def has_values(self, metric: Metric) -> bool:
         """Whether any valid cell has this metric."""
-        return any(
-            self.value(slot, metric) is not None
-            for slot in self._slots.values()
-        )
+        return any(self.all_values(s, metric) for s in self.settings)
 
     def task_number(self, setting: Item, key: str) -> float | None:
         """A number that the setting's task has under `key`, if any."""

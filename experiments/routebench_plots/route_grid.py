@@ -8,13 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from .shapes import Points
-from .sheet import MARGIN
+from .sheet import MARGIN, even_columns
 from .style import PAGE_HEIGHT, PAGE_WIDTH, TEXT_SIZE
 from .text import text_height, wrap
 
 GAP = 0.14
 """Inches between panels."""
-_PANEL_WIDTHS = (1.3, 4.5)
+_LEAST_PANEL_WIDTH, _MOST_PANEL_WIDTH = 1.3, 4.5
 _LEAST_PANEL_HEIGHT = 0.5
 _FIRST_HEIGHT, _MORE_HEIGHT = 3.5, 0.5
 _STRAY_SHARE = 0.5
@@ -82,35 +82,44 @@ def grid_for(view: View, titles: Sequence[Sequence[str]]) -> Grid:
     A few pictures get less of the page than many, and so rather stand
     side by side.
     """
-    least, most = _PANEL_WIDTHS
     page = min(PAGE_HEIGHT, _FIRST_HEIGHT + _MORE_HEIGHT * len(titles))
+    columns = {1} | {
+        even_columns(len(titles), most)
+        for most in range(1, len(titles) + 1)
+        if _panel_width(most) >= _LEAST_PANEL_WIDTH
+    }
+    return max(
+        (_grid(view, titles, n, page) for n in sorted(columns)),
+        key=lambda grid: (grid.scale, grid.columns),
+    )
+
+
+def _grid(
+    view: View, titles: Sequence[Sequence[str]], columns: int, page: float
+) -> Grid:
+    """Panels in so many columns, on a page of that height if they can."""
+    panel_width = _panel_width(columns)
+    title_height = max(
+        text_height(
+            sum(len(wrap(s, panel_width, TEXT_SIZE, "bold")) for s in title),
+            TEXT_SIZE,
+        )
+        for title in titles
+    )
+    rows = -(-len(titles) // columns)
+    room = max(page / rows - title_height - GAP, _LEAST_PANEL_HEIGHT)
+    width, height = view.size
+    scale = min(panel_width / width, room / height)
+    return Grid(
+        columns=columns,
+        rows=rows,
+        panel_width=panel_width,
+        panel_height=max(scale * height, _LEAST_PANEL_HEIGHT),
+        title_height=title_height,
+        scale=scale,
+    )
+
+
+def _panel_width(columns: int) -> float:
     inner = PAGE_WIDTH - 2 * MARGIN
-    grids = []
-    for columns in range(1, len(titles) + 1):
-        panel_width = min((inner - (columns - 1) * GAP) / columns, most)
-        if panel_width < least:
-            break
-        title_height = max(
-            text_height(
-                sum(
-                    len(wrap(s, panel_width, TEXT_SIZE, "bold")) for s in title
-                ),
-                TEXT_SIZE,
-            )
-            for title in titles
-        )
-        rows = -(-len(titles) // columns)
-        room = max(page / rows - title_height - GAP, _LEAST_PANEL_HEIGHT)
-        width, height = view.size
-        scale = min(panel_width / width, room / height)
-        grids.append(
-            Grid(
-                columns=columns,
-                rows=rows,
-                panel_width=panel_width,
-                panel_height=max(scale * height, _LEAST_PANEL_HEIGHT),
-                title_height=title_height,
-                scale=scale,
-            )
-        )
-    return max(grids, key=lambda grid: (grid.scale, grid.columns))
+    return min((inner - (columns - 1) * GAP) / columns, _MOST_PANEL_WIDTH)

@@ -53,6 +53,7 @@ def draw(
         legend=[
             LegendEntry(_marker(contender_looks[c.row_id]), c.label)
             for c in results.contenders
+            if any(c.row_id == contender for _, contender in points)
         ],
     )
     axes = sheet.panels(1, 1)[0][0]

@@ -212,3 +212,9 @@ class Sheet:
         renderer = self.figure.canvas.get_renderer()
         extent = artist.get_window_extent(renderer)
         return float(extent.height / self.figure.dpi)
+
+
+def even_columns(panels: int, most: int) -> int:
+    """The fewest columns that need no more rows than `most` would."""
+    rows = -(-panels // most)
+    return -(-panels // rows)

@@ -154,12 +154,7 @@ def _table(
     scales = [
         scale_for(
             metric,
-            [
-                value.median
-                for row in slots.values()
-                for slot in row
-                if (value := results.value(slot, metric)) is not None
-            ],
+            (value.high for value in results.all_values(setting, metric)),
         )
         for metric in metrics
     ]

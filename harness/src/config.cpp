@@ -23,7 +23,7 @@ constexpr std::size_t kLongestName = 100;
 constexpr std::int64_t kHighestSeed = std::numeric_limits<std::int64_t>::max();
 constexpr const char* kSlotExample = "{ planner = \"rectilinear\", angle_deg = 45 }";
 
-const std::vector<std::string> kTopKeys{"name", "seed",    "models", "plugins",
+const std::vector<std::string> kTopKeys{"name", "seed",    "models", "optional_models", "plugins",
                                         "task", "printer", "run",    "contender"};
 const std::vector<std::string> kRunKeys{"repetitions", "timeout_s", "memory_mb", "jobs",
                                         "keep_layers"};
@@ -57,17 +57,22 @@ std::string beside(const std::filesystem::path& config, const std::string& path)
 
 std::vector<ConfiguredModel> read_models(const ConfigTable& top,
                                          const std::filesystem::path& file) {
-  const ConfigEntry entry = top.at("models");
   std::vector<ConfiguredModel> models;
   std::set<std::string> seen;
-  for (const ConfigEntry& element : entry.elements("models")) {
-    const std::string spec = element.text();
-    if (spec.empty()) element.refuse("an empty text is no model");
-    if (!seen.insert(spec).second) element.refuse("the model " + spec + " stands twice");
-    const bool is_path = !spec.starts_with("shape:") && !spec.starts_with("cgal:");
-    models.push_back({spec, is_path ? beside(file, spec) : spec});
-  }
-  if (models.empty()) entry.refuse("an empty list; an experiment needs a model");
+  const auto read_list = [&](const ConfigEntry& list, const std::string& key, bool optional) {
+    for (const ConfigEntry& element : list.elements(key)) {
+      const std::string spec = element.text();
+      if (spec.empty()) element.refuse("an empty text is no model");
+      if (!seen.insert(spec).second) element.refuse("the model " + spec + " stands twice");
+      const bool is_path = !spec.starts_with("shape:") && !spec.starts_with("cgal:");
+      models.push_back({spec, is_path ? beside(file, spec) : spec, optional});
+    }
+  };
+  const ConfigEntry list = top.at("models");
+  read_list(list, "models", false);
+  if (models.empty()) list.refuse("an empty list; an experiment needs a model");
+  if (const std::optional<ConfigEntry> more = top.find("optional_models"))
+    read_list(*more, "optional_models", true);
   return models;
 }
 

@@ -1,15 +1,11 @@
 /// Configs against the planners that are there: checks, and what is recorded of them.
 
-#include <charconv>
-#include <nlohmann/json.hpp>
-
+#include "json_parts.hpp"
 #include "routebench/geometry/error.hpp"
 #include "routebench/harness/config.hpp"
 
 namespace routebench {
 namespace {
-
-using nlohmann::json;
 
 [[noreturn]] void refuse(const std::string& place, const std::string& key,
                          const std::string& complaint) {
@@ -33,48 +29,7 @@ void check_slot(const ConfiguredContender& contender, const std::string& slot_na
     checked(key, [&] { static_cast<void>(entry.resolve({{key, value}})); });
 }
 
-json json_of(const ParamSet& params) {
-  json object = json::object();
-  for (const auto& [key, value] : params)
-    std::visit([&object, &name = key](const auto& held) { object[name] = held; }, value);
-  return object;
-}
-
-json json_of(const std::optional<SlotSpec>& slot, const Registry& registry) {
-  if (!slot) return nullptr;
-  return {{"planner", slot->planner},
-          {"params", json_of(registry.at(slot->planner).resolve(slot->params))}};
-}
-
-json variant_of(const ContenderSpec& contender, const Registry& registry) {
-  return {{"shell", json_of(contender.shell, registry)},
-          {"fill", json_of(contender.fill, registry)},
-          {"order", contender.order == LayerOrder::kIsland ? "island" : "stage"}};
-}
-
-/// A text as the value that it stands for: number, pair of numbers, or itself.
-json json_of_text(const std::string& text) {
-  const char* const begin = text.data();
-  const char* const end = begin + text.size();
-  std::int64_t whole = 0;
-  if (const auto [at, error] = std::from_chars(begin, end, whole);
-      error == std::errc{} && at == end)
-    return whole;
-  double real = 0;
-  if (const auto [at, error] = std::from_chars(begin, end, real); error == std::errc{} && at == end)
-    return real;
-  if (const std::size_t comma = text.find(','); comma != std::string::npos)
-    return {json_of_text(text.substr(0, comma)), json_of_text(text.substr(comma + 1))};
-  return text;
-}
-
-json json_of(const std::vector<KeyValue>& values) {
-  json object = json::object();
-  for (const KeyValue& pair : values) object[pair.key] = json_of_text(pair.value);
-  return object;
-}
-
-json json_of(const KeepLayers& keep) {
+Json keep_json(const KeepLayers& keep) {
   switch (keep.rule) {
     case KeepLayers::Rule::kNone:
       return "none";
@@ -103,30 +58,33 @@ void check_contenders(const ExperimentConfig& config, const Registry& registry) 
 }
 
 std::string resolved_json(const ExperimentConfig& config, const Registry& registry) {
-  json object;
-  object["name"] = config.name;
-  object["seeds"] = config.seeds;
-  object["plugins"] = config.plugins;
-  object["models"] = json::array();
-  for (const ConfiguredModel& model : config.models) object["models"].push_back(model.spec);
-  object["settings"] = json::array();
+  Json settings = Json::array();
   for (const Setting& setting : config.settings)
-    object["settings"].push_back({{"label", setting.label},
-                                  {"task", json_of(task_values(setting.task))},
-                                  {"printer", json_of(printer_values(setting.printer))}});
-  object["run"] = {{"repetitions", config.run.repetitions},
-                   {"timeout_s", config.run.timeout_s},
-                   {"memory_mb", config.run.memory_mb},
-                   {"jobs", config.run.jobs},
-                   {"keep_layers", json_of(config.run.keep_layers)}};
-  object["contenders"] = json::array();
+    settings.push_back({{"label", setting.label},
+                        {"task", json_of(setting.task)},
+                        {"printer", json_of(setting.printer)}});
+  Json models = Json::array(), optional_models = Json::array();
+  for (const ConfiguredModel& model : config.models)
+    (model.optional ? optional_models : models).push_back(model.spec);
+  Json contenders = Json::array();
   for (const ConfiguredContender& contender : config.contenders) {
-    json entry = variant_of(contender.spec, registry);
-    entry["name"] = contender.spec.name;
+    Json entry = json_of(Contender(contender.spec, registry));
     entry["base_name"] = contender.base_name;
-    object["contenders"].push_back(std::move(entry));
+    contenders.push_back(std::move(entry));
   }
-  return object.dump(2);
+  return text_of({{"name", config.name},
+                  {"seeds", config.seeds},
+                  {"models", std::move(models)},
+                  {"optional_models", std::move(optional_models)},
+                  {"plugins", config.plugins},
+                  {"settings", std::move(settings)},
+                  {"run",
+                   {{"repetitions", config.run.repetitions},
+                    {"timeout_s", config.run.timeout_s},
+                    {"memory_mb", config.run.memory_mb},
+                    {"jobs", config.run.jobs},
+                    {"keep_layers", keep_json(config.run.keep_layers)}}},
+                  {"contenders", std::move(contenders)}});
 }
 
 }  // namespace routebench

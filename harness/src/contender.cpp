@@ -20,20 +20,21 @@ constexpr std::array<std::string_view, 3> kKindNames = {"wall", "dense", "sparse
 
 /// No printer reaches further, and arithmetic on the grid stays exact well beyond.
 constexpr double kFarthestMm = 1e6;
+constexpr double kWidestMm = 1e3;
 
 std::unique_ptr<const Planner> make_planner(const SlotSpec& slot, PlannerRole role,
                                             const std::string& contender, const Registry& registry,
                                             ParamSet& resolved) {
   const Registry::Entry& entry = registry.at(slot.planner);
   if (entry.info.role != role) {
-    const bool shell = role == PlannerRole::kShell;
     std::string known;
     for (const auto& [name, other] : registry.entries())
       if (other.info.role == role) known += (known.empty() ? "" : ", ") + name;
-    throw Error(ErrorKind::kBadInput, "contender " + contender + ": " + slot.planner + " is no " +
-                                          (shell ? "shell" : "fill") + " planner; name it as " +
-                                          (shell ? "fill" : "shell") + ", or take one of: " +
-                                          (known.empty() ? "(none is registered)" : known));
+    throw Error(ErrorKind::kBadInput,
+                "contender " + contender + ": " + slot.planner + " is no " +
+                    std::string(to_string(role)) + " planner; name it as " +
+                    std::string(to_string(entry.info.role)) +
+                    ", or take one of: " + (known.empty() ? "(none is registered)" : known));
   }
   resolved = entry.resolve(slot.params);
   return entry.make(slot.params);
@@ -66,9 +67,9 @@ std::string fault_of(const Route& route) {
     if (stroke.points.size() < 2)
       return which + "has " + std::to_string(stroke.points.size()) +
              " points; it needs two or more";
-    if (!(stroke.width_mm > 0) || !std::isfinite(stroke.width_mm))
+    if (!(stroke.width_mm > 0 && stroke.width_mm <= kWidestMm))
       return which + "has the width " + std::to_string(stroke.width_mm) +
-             " mm; it must be positive";
+             " mm; it must be positive and at most a metre";
     for (std::size_t k = 0; k < stroke.points.size(); ++k) {
       const Point2 p = stroke.points[k];
       if (!is_place(p))
@@ -153,6 +154,10 @@ void share_out(const Polygons& regions, const IslandTree& tree, std::vector<Isla
 }
 
 }  // namespace
+
+std::string_view to_string(PlannerRole role) {
+  return role == PlannerRole::kShell ? "shell" : "fill";
+}
 
 std::string_view to_string(LayerOrder order) {
   return kOrderNames[static_cast<std::size_t>(order)];

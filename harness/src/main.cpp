@@ -1,13 +1,18 @@
 /// The program `routebench`.
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <exception>
 #include <iostream>
+#include <new>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "routebench/geometry/error.hpp"
 #include "routebench/harness/commands.hpp"
 #include "routebench/harness/version.hpp"
+#include "routebench/planning/params.hpp"
 
 namespace {
 
@@ -21,12 +26,59 @@ std::string one_line(std::string text) {
   return text;
 }
 
+int complain(const std::string& message, int exit_code) {
+  std::cerr << "routebench: " << one_line(message) << '\n';
+  return exit_code;
+}
+
+std::string did_you_mean(const std::string& word, const std::vector<std::string>& known) {
+  const std::optional<std::string> near = routebench::nearest_name(word, known);
+  return near ? "; did you mean '" + *near + "'?" : "";
+}
+
+/// The command of a call, or the program itself.
+const CLI::App& called(const CLI::App& app) {
+  const auto commands = app.get_subcommands();
+  return commands.empty() ? app : *commands.front();
+}
+
+std::string explain(const CLI::App& app, const CLI::ParseError& error) {
+  const CLI::App& command = called(app);
+  const std::vector<std::string> extras = command.remaining();
+  std::string message = error.what();
+  if (!extras.empty()) {
+    std::vector<std::string> known;
+    for (const CLI::Option* option : command.get_options())
+      for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+    message = "'" + extras.front() + "' was not expected" + did_you_mean(extras.front(), known);
+  }
+  return message + " (see routebench " + (&command == &app ? "" : command.get_name() + " ") +
+         "--help)";
+}
+
+/// Throws Error for a first word that is neither a command nor an option.
+void check_command(const CLI::App& app, int argc, char** argv) {
+  if (argc < 2 || argv[1][0] == '-') return;
+  std::vector<std::string> known;
+  for (const CLI::App* command : app.get_subcommands({})) known.push_back(command->get_name());
+  const std::string word = argv[1];
+  if (std::find(known.begin(), known.end(), word) != known.end()) return;
+  throw routebench::Error(routebench::ErrorKind::kBadUsage, "there is no command '" + word + "'" +
+                                                                did_you_mean(word, known) +
+                                                                " (see routebench --help)");
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"routebench: plans routes for 3D printing and judges them"};
+  CLI::App app{"Plan routes for 3D printing and judge them", "routebench"};
   app.set_version_flag("--version", std::string(routebench::kVersion));
   app.require_subcommand(1);
+  app.get_formatter()->column_width(32);
+  const std::string exit_codes =
+      "Exit codes: 0 done, 1 done but not everything is valid, 2 bad usage or input, 3 internal "
+      "error.";
+  app.footer(exit_codes);  // commands inherit it
   int exit_code = 0;
   routebench::add_run_command(app, exit_code);
   routebench::add_plan_command(app, exit_code);
@@ -35,19 +87,21 @@ int main(int argc, char** argv) {
   routebench::add_plot_command(app, exit_code);
   routebench::add_export_command(app, exit_code);
   routebench::add_doctor_command(app, exit_code);
+  app.footer(exit_codes + "\nEach command has its own help: routebench plan --help.");
   try {
+    check_command(app, argc, argv);
     app.parse(argc, argv);
-    std::cout.flush();
+    if (!std::cout.flush()) return complain("standard output: cannot be written", kExitBadInput);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-    std::cerr << "routebench: " << one_line(error.what()) << " (see routebench --help)\n";
-    return kExitBadInput;
+    return complain(explain(app, error), kExitBadInput);
   } catch (const routebench::Error& error) {
-    std::cerr << "routebench: " << one_line(error.what()) << '\n';
-    return error.kind() == routebench::ErrorKind::kInternal ? kExitInternal : kExitBadInput;
+    return complain(error.what(), error.kind() == routebench::ErrorKind::kInternal ? kExitInternal
+                                                                                   : kExitBadInput);
+  } catch (const std::bad_alloc&) {
+    return complain("out of memory", kExitInternal);
   } catch (const std::exception& error) {
-    std::cerr << "routebench: internal error: " << one_line(error.what()) << '\n';
-    return kExitInternal;
+    return complain(std::string("internal error: ") + error.what(), kExitInternal);
   }
   return exit_code;
 }

@@ -120,20 +120,21 @@ void OutputSet::add_folder(const fs::path& folder) {
 
 void OutputSet::add(const fs::path& file, const Write& write) {
   std::error_code error;
+  const fs::file_status status = fs::status(file, error);
+  if (fs::is_directory(status)) fail(file, "it is a folder");
+  const bool there = fs::exists(status);
+  if (there && ::access(file.c_str(), W_OK) != 0) fail(file, reason_of(errno));
+  if (there && !fs::is_regular_file(status)) {
+    write_file(file, 0, file, write);
+    return;
+  }
   // A link keeps pointing where it does: what it names is replaced.
   fs::path target = fs::weakly_canonical(file, error);
   if (error) target = file;
   if (std::find(written_.begin(), written_.end(), target) != written_.end())
     throw Error(ErrorKind::kBadUsage,
                 file.string() + ": named for two outputs; give each a file of its own");
-  const fs::file_status status = fs::status(target, error);
-  if (fs::is_directory(status)) fail(file, "it is a folder");
-  if (fs::exists(status) && ::access(target.c_str(), W_OK) != 0) fail(file, reason_of(errno));
   written_.push_back(target);
-  if (fs::exists(status) && !fs::is_regular_file(status)) {
-    write_file(target, 0, file, write);
-    return;
-  }
   const fs::path temporary = target.parent_path() / ("." + target.filename().string() + "." +
                                                      std::to_string(::getpid()) + ".part");
   pending_.push_back({temporary, target});

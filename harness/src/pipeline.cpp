@@ -97,7 +97,7 @@ SlicedModel slice_model(const std::string& spec, const Task& task, const SliceMo
                                            : slice_mesh_model(spec, task, options, parallel_for);
   sliced.spec = spec;
   sliced.origin = lower_corner(sliced.layers);
-  find_solid(sliced.layers, task.skin_layers, parallel_for);
+  if (options.find_skins) find_solid(sliced.layers, task.skin_layers, parallel_for);
   return sliced;
 }
 

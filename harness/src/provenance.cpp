@@ -1,5 +1,7 @@
 #include "routebench/harness/provenance.hpp"
 
+#include <elf.h>
+#include <link.h>
 #include <sched.h>
 #include <sqlite3.h>
 #include <sys/utsname.h>
@@ -8,6 +10,7 @@
 
 #include <CLI/Version.hpp>
 #include <array>
+#include <cstring>
 #include <ctime>
 #include <fstream>
 #include <iterator>
@@ -25,7 +28,49 @@ std::string joined(std::initializer_list<int> numbers) {
   return text;
 }
 
-std::string libraries_json() {
+/// The build id in a loaded object's notes; see the ELF specification, note sections.
+std::string build_id_of(const dl_phdr_info& object) {
+  constexpr std::string_view kDigits = "0123456789abcdef";
+  for (int i = 0; i < object.dlpi_phnum; ++i) {
+    const ElfW(Phdr)& segment = object.dlpi_phdr[i];
+    if (segment.p_type != PT_NOTE) continue;
+    // Addresses come as numbers here.
+    const char* at = reinterpret_cast<const char*>(object.dlpi_addr + segment.p_vaddr);
+    const char* const end = at + segment.p_memsz;
+    while (end - at >= static_cast<std::ptrdiff_t>(sizeof(ElfW(Nhdr)))) {
+      ElfW(Nhdr) note{};
+      std::memcpy(&note, at, sizeof note);
+      const auto padded = [](std::size_t size) { return (size + 3) / 4 * 4; };
+      const std::string_view name(at + sizeof note, note.n_namesz);
+      const std::string_view content(name.data() + padded(note.n_namesz), note.n_descsz);
+      if (note.n_type == NT_GNU_BUILD_ID && name == std::string_view("GNU", 4)) {
+        std::string id;
+        for (const char c : content) {
+          const auto byte = static_cast<unsigned char>(c);
+          id += {kDigits[byte / 16u], kDigits[byte % 16u]};
+        }
+        return id;
+      }
+      at = content.data() + padded(note.n_descsz);
+    }
+  }
+  return {};
+}
+
+/// The build ids of the program and of our own shared libraries.
+std::string program_build_id() {
+  std::string ids;
+  const auto visit = [](dl_phdr_info* object, std::size_t, void* list) {
+    const std::string_view name = object->dlpi_name;  // the program itself has none
+    if (name.empty() || name.find("libroutebench_") != name.npos)
+      static_cast<std::string*>(list)->append(build_id_of(*object));
+    return 0;
+  };
+  dl_iterate_phdr(visit, &ids);
+  return ids;
+}
+
+std::string libraries_json(const std::string& build_id) {
   nlohmann::json libraries{
       {"SQLite", sqlite3_libversion()},
       {"CLI11", CLI11_VERSION},
@@ -34,7 +79,8 @@ std::string libraries_json() {
                                 NLOHMANN_JSON_VERSION_PATCH})},
       {"CGAL", kCgalVersion},
       {"Boost", kBoostVersion},
-      {"Clipper", kClipperVersion}};
+      {"Clipper", kClipperVersion},
+      {"program_build_id", build_id}};
   return libraries.dump();
 }
 
@@ -83,7 +129,8 @@ Provenance collect_provenance() {
   }
   here.compiler = kCompiler;
   here.compiler_flags = kCompilerFlags;
-  here.libraries_json = libraries_json();
+  here.program_build_id = program_build_id();
+  here.libraries_json = libraries_json(here.program_build_id);
   here.cpu = value_in_file("/proc/cpuinfo", "model name");
   here.cores = usable_cores();
   here.memory_bytes = static_cast<std::int64_t>(sysconf(_SC_PHYS_PAGES)) * sysconf(_SC_PAGESIZE);

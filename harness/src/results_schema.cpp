@@ -129,7 +129,15 @@ void create_schema(Database& database, const std::string& experiment) {
   transaction.commit();
 }
 
-std::string experiment_of(Database& database) { return meta_value(database, "experiment"); }
+void require_experiment(Database& database, const std::string& experiment) {
+  const std::string found = meta_value(database, "experiment");
+  if (found.empty())
+    refuse(database,
+           "is a database, but none of routebench's results; give another folder with --out");
+  if (found != experiment)
+    refuse(database, "holds the results of the experiment " + found + ", not of " + experiment +
+                         "; give another folder with --out");
+}
 
 void require_our_schema(Database& database) {
   const std::string version = meta_value(database, "schema_version");

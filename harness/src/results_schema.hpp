@@ -17,7 +17,7 @@ void create_schema(Database& database, const std::string& experiment);
 /// another schema or other metrics.
 void require_our_schema(Database& database);
 
-/// The experiment that a database belongs to; empty if it is not one of ours.
-[[nodiscard]] std::string experiment_of(Database& database);
+/// Throws Error{kBadInput} if the database is not one of ours or belongs to another experiment.
+void require_experiment(Database& database, const std::string& experiment);
 
 }  // namespace routebench

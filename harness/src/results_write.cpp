@@ -3,6 +3,7 @@
 #include <sstream>
 #include <system_error>
 
+#include "results_read.hpp"
 #include "results_schema.hpp"
 #include "routebench/geometry/error.hpp"
 #include "routebench/geometry/layer_io.hpp"
@@ -22,18 +23,6 @@ fs::path made_folder(const fs::path& folder) {
     throw Error(ErrorKind::kBadInput,
                 folder.string() + ": the folder cannot be made: " + error.message());
   return folder;
-}
-
-void require_same_experiment(Database& database, const std::string& experiment) {
-  const std::string found = experiment_of(database);
-  if (found.empty())
-    throw Error(ErrorKind::kBadInput, database.file().string() +
-                                          ": is a database, but none of routebench's results; "
-                                          "give another folder with --out");
-  if (found != experiment)
-    throw Error(ErrorKind::kBadInput,
-                database.file().string() + ": holds the results of the experiment " + found +
-                    ", not of " + experiment + "; give another folder with --out");
 }
 
 /// The file that SQLite keeps beside a database while it writes.
@@ -79,7 +68,7 @@ struct ResultsWriter::Impl {
       : folder(made_folder(folder_in)), lock(folder), file(folder / kResultsFileName) {
     if (fs::exists(file)) {
       Database old(file, OpenMode::kExisting);
-      require_same_experiment(old, experiment);
+      require_experiment(old, experiment);
       if (start == Start::kResume) require_our_schema(old);
     }
     const bool resume = start == Start::kResume && fs::exists(file);
@@ -210,6 +199,14 @@ ResultsWriter::~ResultsWriter() = default;
 
 const fs::path& ResultsWriter::file() const noexcept { return impl_->file; }
 
+KnownCells ResultsWriter::known_cells() { return read_known_cells(*impl_->database); }
+
+void ResultsWriter::together(const std::function<void()>& writes) {
+  Transaction transaction(*impl_->database);
+  writes();
+  transaction.commit();
+}
+
 void ResultsWriter::begin_run(const RunRecord& run) {
   const Provenance& from = run.provenance;
   Statement insert = impl_->sql(
@@ -300,29 +297,6 @@ void ResultsWriter::add_layer_shape(std::int64_t model_id, const Layer& layer) {
       .bind(layer.z_mm)
       .bind(std::string_view(wkt_of(layer)))
       .run();
-}
-
-std::optional<KnownCell> ResultsWriter::find_cell(const std::string& cell_key) {
-  Statement find = impl_->sql(
-      "SELECT cell_id, outcome, route_hash, cell_wall_s, git_commit,"
-      " json_extract(config_resolved_json, '$.run.timeout_s'),"
-      " json_extract(config_resolved_json, '$.run.memory_mb')"
-      " FROM cell JOIN run USING(run_id) WHERE cell_key = ?");
-  find.bind(std::string_view(cell_key));
-  if (!find.next()) return std::nullopt;
-  KnownCell cell;
-  cell.cell_id = find.integer(0);
-  cell.outcome = outcome_named(find.text(1));
-  if (!find.is_null(2)) cell.route_hash = find.text(2);
-  cell.cell_wall_s = find.real(3);
-  if (!find.is_null(4)) cell.git_commit = find.text(4);
-  cell.timeout_s = find.real(5);
-  cell.memory_mb = static_cast<int>(find.integer(6));
-  Statement samples =
-      impl_->sql("SELECT repetition FROM timing_sample WHERE cell_id = ? ORDER BY repetition");
-  samples.bind(cell.cell_id);
-  while (samples.next()) cell.repetitions.push_back(static_cast<int>(samples.integer(0)));
-  return cell;
 }
 
 void ResultsWriter::reuse_cell(std::int64_t cell_id) {

@@ -119,6 +119,13 @@ class RoutesTest(PlotTestCase):
         self.assertEqual(len(scales), 1)
         self.assert_laid_out(sheet)
 
+    def test_four_panels_stand_two_by_two(self) -> None:
+        for name in "abcd":
+            self.cell(name, STROKES)
+        corners = [a.get_window_extent().p0 for a in self.panels(self.draw())]
+        self.assertEqual(len({round(x) for x, _ in corners}), 2)
+        self.assertEqual(len({round(y) for _, y in corners}), 2)
+
     def test_scale_bar_is_true(self) -> None:
         self.cell("a", STROKES)
         sheet = self.draw()

@@ -99,6 +99,11 @@ class ScatterTest(PlotTestCase):
         self.assertEqual(self.points(sheet, large=True), [])
         self.assertIn("no model is shared", note(sheet))
 
+    def test_legend_names_who_is_shown(self) -> None:
+        sheet = self.draw({("m", "a"): (1, 1), ("m", "b"): None})
+        labels = [t.get_text() for t in sheet.figure.legends[0].get_texts()]
+        self.assertEqual(labels, ["a"])
+
     def test_wide_ranges_are_logarithmic(self) -> None:
         sheet = self.draw({("m", "a"): (10, 1), ("n", "a"): (20, 5000)})
         axes = visible_axes(sheet)[0]

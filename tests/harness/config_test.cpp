@@ -97,6 +97,7 @@ TEST(Config, ReadsEveryKey) {
     name = "all-keys_1.0"
     seed = 7
     models = ["shape:box?size=20", "cgal:meshes/elephant.off", "parts/a.stl?size=60", "/abs/b.stl"]
+    optional_models = ["cgal:meshes/knot.off"]
     plugins = ["p.so"]
     [task]
     layer_height_mm = 0.3
@@ -122,12 +123,15 @@ TEST(Config, ReadsEveryKey) {
     fill.alternate = false
   )");
   EXPECT_EQ(config.seeds, (std::vector<std::uint64_t>{7}));
-  ASSERT_EQ(config.models.size(), 4u);
+  ASSERT_EQ(config.models.size(), 5u);
   EXPECT_EQ(config.models[0].source, "shape:box?size=20");
   EXPECT_EQ(config.models[1].source, "cgal:meshes/elephant.off");
   EXPECT_EQ(config.models[2].spec, "parts/a.stl?size=60");
   EXPECT_EQ(config.models[2].source, "dir/parts/a.stl?size=60");
   EXPECT_EQ(config.models[3].source, "/abs/b.stl");
+  EXPECT_FALSE(config.models[3].optional);
+  EXPECT_EQ(config.models[4].source, "cgal:meshes/knot.off");
+  EXPECT_TRUE(config.models[4].optional);
   EXPECT_EQ(config.plugins, (std::vector<std::string>{"dir/p.so"}));
   const Task& task = config.settings.at(0).task;
   EXPECT_EQ(task.layer_height_mm, 0.3);
@@ -289,7 +293,7 @@ INSTANTIATE_TEST_SUITE_P(
                   "dir/x.toml:3: key `sede`: unknown key of the config; did you mean `seed`?"},
         BadConfig{"far_key", with("zzzzzzzz = 3"),
                   "dir/x.toml:3: key `zzzzzzzz`: unknown key of the config; known are name, seed, "
-                  "models, plugins, task, printer, run, contender"},
+                  "models, optional_models, plugins, task, printer, run, contender"},
         BadConfig{"name_path", "name = \"../up\"",
                   "dir/x.toml:1: key `name`: must be made of letters, digits, - _ and . (it names "
                   "the folder of the results), not \"../up\""},
@@ -299,6 +303,8 @@ INSTANTIATE_TEST_SUITE_P(
                   "dir/x.toml:2: key `models`: must be a list of models, not \"shape:box\""},
         BadConfig{"models_none", "name = \"t\"\nmodels = []\n",
                   "dir/x.toml:2: key `models`: an empty list; an experiment needs a model"},
+        BadConfig{"optional_twice", "name = \"t\"\nmodels = [\"a\"]\noptional_models = [\"a\"]\n",
+                  "dir/x.toml:3: key `optional_models`: the model a stands twice"},
         BadConfig{"models_twice", "name = \"t\"\nmodels = [\"a\",\n\"a\"]\n",
                   "dir/x.toml:3: key `models`: the model a stands twice"},
         BadConfig{"seed_negative", with("seed = -1"),

@@ -21,6 +21,10 @@ constexpr double kMaxInventedShare = 0.4;
 /// Line c begins at end 2 c and finishes at end 2 c + 1.
 using End = std::uint32_t;
 
+constexpr double kFirstReachMm = 1 / kGridUnitsPerMm;
+constexpr double kReachFactor = 4;
+constexpr std::size_t kPairsPerSite = 32;
+
 End other_end(End end) { return end ^ 1u; }
 bool is_finish(End end) { return (end & 1u) != 0; }
 
@@ -38,23 +42,28 @@ struct Site {
   EndList finishes;
 };
 
-/// Greedy matching of line ends by distance. A pair of two beginnings or two finishes (neighbouring
-/// facets that disagree on what is outside) counts as crack_mm further apart, so that within cracks
-/// directions are respected where that is possible at all.
+/// Greedy matching of line ends by distance: of all pairs the closest first. Up to crack_mm, ends
+/// are joined to beginnings wherever there is a choice; what is left may also be joined end to end
+/// or beginning to beginning (neighbouring facets that disagree on what is outside). Beyond, such a
+/// pair counts as crack_mm further apart than it is.
 class EndMatching {
  public:
   EndMatching(const std::vector<Chain>& lines, double crack_mm)
-      : clash_mm_(crack_mm), mates_(2 * lines.size()) {
+      : crack_mm_(crack_mm), mates_(2 * lines.size()) {
     gather_sites(lines);
-    // Closest pairs first: within each reach all candidates are at hand, and reaches grow fast
-    // enough for few rounds, slowly enough for few candidates.
-    for (double reach_mm = 1 / kGridUnitsPerMm; free_ends_ > 0; reach_mm *= 4)
-      match_within(reach_mm);
+    match_up_to(crack_mm, {.directed = true, .clashing = false});
+    match_up_to(crack_mm, {.directed = false, .clashing = true});
+    for (double reach_mm = std::max(kFirstReachMm, 2 * crack_mm); free_ends_ > 0; reach_mm *= 2)
+      match(candidates_within(reach_mm, {.directed = true, .clashing = true}));
   }
 
   [[nodiscard]] End mate(End end) const { return mates_[end]; }
 
  private:
+  /// Which pairs are wanted.
+  struct Kinds {
+    bool directed, clashing;
+  };
   struct Candidate {
     double cost_mm;
     std::uint32_t a, b;  // sites, a <= b
@@ -82,23 +91,31 @@ class EndMatching {
     }
   }
 
-  void match_within(double reach_mm) {
-    std::vector<Candidate> candidates = candidates_within(reach_mm);
+  /// Where ends are dense it begins with a short reach: the pairs that it joins are out of the way
+  /// when the reach grows, so that candidates stay few.
+  void match_up_to(double limit_mm, Kinds kinds) {
+    double reach_mm = limit_mm;
+    while (reach_mm > kFirstReachMm && is_dense(reach_mm)) reach_mm /= kReachFactor;
+    for (; reach_mm < limit_mm; reach_mm *= kReachFactor) match(candidates_within(reach_mm, kinds));
+    match(candidates_within(limit_mm, kinds));
+  }
+
+  void match(std::vector<Candidate> candidates) {
     std::sort(candidates.begin(), candidates.end(), [](const Candidate& x, const Candidate& y) {
       return std::tie(x.cost_mm, x.a, x.b, x.clash) < std::tie(y.cost_mm, y.a, y.b, y.clash);
     });
     for (const Candidate& c : candidates) {
       Site& a = sites_[c.a];
       Site& b = sites_[c.b];
-      match(a.begins, c.clash ? b.begins : b.finishes);
-      match(a.finishes, c.clash ? b.finishes : b.begins);
+      join(a.begins, c.clash ? b.begins : b.finishes);
+      join(a.finishes, c.clash ? b.finishes : b.begins);
     }
     std::erase_if(sites_,
                   [](const Site& s) { return s.begins.free() == 0 && s.finishes.free() == 0; });
   }
 
   /// Joins as many ends of two lists as both have; they may be one and the same.
-  void match(EndList& a, EndList& b) {
+  void join(EndList& a, EndList& b) {
     const std::size_t needed = &a == &b ? 2 : 1;
     while (a.free() >= needed && b.free() >= needed) {
       const End x = a.take(), y = b.take();
@@ -108,47 +125,61 @@ class EndMatching {
     }
   }
 
-  [[nodiscard]] std::vector<Candidate> candidates_within(double reach_mm) const {
+  /// Calls visit(a, b) for all sites a <= b that may be within the reach, until it returns false.
+  template <typename Visit>
+  void visit_pairs(double reach_mm, Visit&& visit) const {
+    // Cells as wide as the reach: partners are in the same or in a neighbouring one.
+    const double cell_mm = std::max(reach_mm, kFirstReachMm);
     const auto cell_of = [&](std::uint32_t site) {
       const Point2 at = sites_[site].at;
-      return Cell{static_cast<std::int64_t>(std::floor(at.y / reach_mm)),
-                  static_cast<std::int64_t>(std::floor(at.x / reach_mm)), site};
+      return Cell{static_cast<std::int64_t>(std::floor(at.y / cell_mm)),
+                  static_cast<std::int64_t>(std::floor(at.x / cell_mm)), site};
     };
     std::vector<Cell> cells;
     for (std::uint32_t s = 0; s < sites_.size(); ++s) cells.push_back(cell_of(s));
     std::sort(cells.begin(), cells.end());
-
-    std::vector<Candidate> candidates;
-    for (std::uint32_t s = 0; s < sites_.size(); ++s) {
-      const Cell own = cell_of(s);
+    for (const Cell& own : cells)
       for (std::int64_t row = own.row - 1; row <= own.row + 1; ++row) {
         const Cell from{row, own.column - 1, 0};
         for (auto cell = std::lower_bound(cells.begin(), cells.end(), from);
              cell != cells.end() && cell->row == row && cell->column <= own.column + 1; ++cell)
-          if (cell->site >= s) add_candidates(s, cell->site, reach_mm, candidates);
+          if (cell->site >= own.site && !visit(own.site, cell->site)) return;
       }
-    }
+  }
+
+  [[nodiscard]] bool is_dense(double reach_mm) const {
+    const std::size_t limit = kPairsPerSite * sites_.size();
+    std::size_t pairs = 0;
+    visit_pairs(reach_mm, [&](std::uint32_t, std::uint32_t) { return ++pairs <= limit; });
+    return pairs > limit;
+  }
+
+  [[nodiscard]] std::vector<Candidate> candidates_within(double reach_mm, Kinds kinds) const {
+    std::vector<Candidate> candidates;
+    visit_pairs(reach_mm, [&](std::uint32_t a, std::uint32_t b) {
+      const double apart_mm = distance(sites_[a].at, sites_[b].at);
+      if (apart_mm > reach_mm) return true;
+      if (kinds.directed && can_join(a, b)) candidates.push_back({apart_mm, a, b, false});
+      if (kinds.clashing && can_clash(a, b))
+        candidates.push_back({apart_mm + crack_mm_, a, b, true});
+      return true;
+    });
     return candidates;
   }
 
-  void add_candidates(std::uint32_t a, std::uint32_t b, double reach_mm,
-                      std::vector<Candidate>& candidates) const {
-    const Site& x = sites_[a];
-    const Site& y = sites_[b];
-    const double apart_mm = distance(x.at, y.at);
+  [[nodiscard]] bool can_join(std::uint32_t a, std::uint32_t b) const {
+    const Site &x = sites_[a], &y = sites_[b];
+    return (x.begins.free() > 0 && y.finishes.free() > 0) ||
+           (x.finishes.free() > 0 && y.begins.free() > 0);
+  }
+  [[nodiscard]] bool can_clash(std::uint32_t a, std::uint32_t b) const {
+    const Site &x = sites_[a], &y = sites_[b];
     const std::size_t needed = a == b ? 2 : 1;
-    const auto both = [&](const EndList& s, const EndList& t) {
-      return s.free() >= needed && t.free() >= needed;
-    };
-    if (a != b && apart_mm <= reach_mm &&
-        (both(x.begins, y.finishes) || both(x.finishes, y.begins)))
-      candidates.push_back({apart_mm, a, b, false});
-    if (apart_mm + clash_mm_ <= reach_mm &&
-        (both(x.begins, y.begins) || both(x.finishes, y.finishes)))
-      candidates.push_back({apart_mm + clash_mm_, a, b, true});
+    return (x.begins.free() >= needed && y.begins.free() >= needed) ||
+           (x.finishes.free() >= needed && y.finishes.free() >= needed);
   }
 
-  double clash_mm_;
+  double crack_mm_;
   std::vector<End> mates_;
   std::vector<Site> sites_;  // that have free ends, by coordinates
   std::size_t free_ends_ = 0;

@@ -12,6 +12,7 @@
 #include "slicing/chain_segments.hpp"
 #include "slicing/close_gaps.hpp"
 #include "slicing/cut_triangles.hpp"
+#include "slicing/slivers.hpp"
 
 namespace routebench {
 namespace {
@@ -169,7 +170,10 @@ Slices slice_mesh(const Mesh& mesh, const SliceOptions& options, const std::stri
       closings[i] = slicing::close_gaps(contours.open, options.crack_mm, contours.rings);
     layer.repaired = closings[i].widest_open_mm > 0;
     if (layer.repaired && !options.repair) return;  // refused below, lowest layer first
-    layer.polygons = polygons_from_rings(std::move(contours.rings), FillRule::kNonZero);
+    // Where facets gape by a crack they also overlap by as much.
+    layer.polygons =
+        slicing::without_slivers(polygons_from_rings(std::move(contours.rings), FillRule::kNonZero),
+                                 std::max(slicing::kSliverMm, closings[i].widest_crack_mm));
   });
 
   for (std::size_t i = 0; i < slices.layers.size(); ++i)

@@ -6,15 +6,11 @@
 #include <utility>
 
 #include "routebench/geometry/error.hpp"
-#include "routebench/geometry/grid.hpp"
 #include "routebench/geometry/region.hpp"
+#include "slicing/slivers.hpp"
 
 namespace routebench {
 namespace {
-
-/// A difference of areas that share a boundary leaves slivers along it where corners were rounded
-/// to the grid. Everything narrower than this on average is taken for one.
-constexpr double kSliverMm = 8 / kGridUnitsPerMm;
 
 // Neighbouring layers are often equal: then no clipper is needed.
 Polygons common_part(const Polygons& a, const Polygons& b) { return a == b ? a : intersect(a, b); }
@@ -51,16 +47,6 @@ class CommonParts {
   std::vector<Polygons> to_block_end_;
 };
 
-bool is_sliver(const Ring& ring) {
-  return 2 * std::abs(signed_area_mm2(ring)) < kSliverMm * perimeter_mm(ring);
-}
-
-Polygons without_slivers(Polygons polygons) {
-  std::erase_if(polygons, [](const Polygon& polygon) { return is_sliver(polygon.outer); });
-  for (Polygon& polygon : polygons) std::erase_if(polygon.holes, is_sliver);
-  return polygons;
-}
-
 }  // namespace
 
 void find_solid(std::vector<Layer>& layers, int skin_layers, const ParallelFor& parallel_for) {
@@ -77,8 +63,9 @@ void find_solid(std::vector<Layer>& layers, int skin_layers, const ParallelFor& 
   parallel_for(count, [&](std::size_t i) {
     Layer& layer = layers[i];
     const bool at_an_end = i < reach || i + reach >= count;
-    layer.solid = at_an_end ? layer.polygons
-                            : without_slivers(rest(layer.polygons, common.of_window(i - reach)));
+    layer.solid = at_an_end
+                      ? layer.polygons
+                      : slicing::without_slivers(rest(layer.polygons, common.of_window(i - reach)));
   });
 }
 

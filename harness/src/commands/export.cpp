@@ -1,9 +1,52 @@
 #include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+#include <ostream>
+#include <string>
 
 #include "routebench/harness/commands.hpp"
+#include "routebench/harness/output.hpp"
+#include "routebench/harness/results.hpp"
 
 namespace routebench {
+namespace {
 
-void add_export_command(CLI::App&, int&) {}
+struct Arguments {
+  std::string results;
+  std::string out;
+};
+
+void run(const Arguments& arguments) {
+  const std::filesystem::path file = results_file(arguments.results);
+  const std::filesystem::path folder =
+      arguments.out.empty() ? file.parent_path() / "csv" : std::filesystem::path(arguments.out);
+  const std::vector<std::filesystem::path> written = export_csv(file, folder);
+  write_to_stdout([&](std::ostream& out) {
+    for (const std::filesystem::path& path : written) out << path.string() << '\n';
+  });
+}
+
+}  // namespace
+
+void add_export_command(CLI::App& app, int& exit_code) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App& command = *app.add_subcommand("export", "write results as CSV files");
+  command.add_option("RESULTS", arguments->results, "a folder of results, or the database in it")
+      ->required();
+  command.add_option("--out", arguments->out, "where the files go [RESULTS/csv]")->type_name("DIR");
+  command.footer(
+      "cells.csv       one row a cell and metric: experiment, model, contender, setting, seed,\n"
+      "                outcome, reason, layers, route_hash, metric, value, unit, better\n"
+      "layers.csv      one row a cell and layer, a column a metric\n"
+      "timings.csv     one row a cell and repetition: plan_wall_ns, plan_cpu_ns\n"
+      "models.csv, contenders.csv, settings.csv, runs.csv, metrics.csv: what the names stand for\n"
+      "UTF-8, a header line each, fields quoted where they must be (RFC 4180); an empty field is "
+      "a\n"
+      "value that does not apply. Rows about cells are of the last run's config.");
+  command.callback([arguments, &exit_code] {
+    run(*arguments);
+    exit_code = 0;
+  });
+}
 
 }  // namespace routebench

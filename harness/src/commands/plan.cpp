@@ -1,9 +1,207 @@
-#include <CLI/CLI.hpp>
+#include <sys/resource.h>
 
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "arguments.hpp"
+#include "json_documents.hpp"
+#include "layer_selection.hpp"
+#include "routebench/geometry/error.hpp"
 #include "routebench/harness/commands.hpp"
+#include "routebench/harness/gcode_writer.hpp"
+#include "routebench/harness/parallel.hpp"
+#include "routebench/harness/pipeline.hpp"
+#include "routebench/harness/route_svg.hpp"
 
 namespace routebench {
+namespace {
 
-void add_plan_command(CLI::App&, int&) {}
+constexpr int kExitNotValid = 1;
+
+struct PlanArguments {
+  std::string model;
+  std::string shell;
+  std::string fill;
+  std::string order = "island";
+  std::vector<std::string> set;
+  std::vector<std::string> task;
+  std::vector<std::string> printer;
+  std::vector<std::string> plugins;
+  std::string layers;
+  std::string gcode;
+  std::string svg;
+  std::string json;
+  std::uint64_t seed = 1;
+  int jobs = 0;
+  bool repair = false;
+};
+
+ContenderSpec contender_of(const PlanArguments& arguments, const Registry& registry) {
+  if (arguments.shell.empty() && arguments.fill.empty())
+    throw Error(ErrorKind::kBadUsage,
+                "no planner: give --shell NAME, --fill NAME or both (see routebench planners)");
+  ContenderSpec spec;
+  spec.order = layer_order(arguments.order);
+  spec.name = arguments.shell;
+  if (!arguments.fill.empty()) spec.name += (spec.name.empty() ? "" : " + ") + arguments.fill;
+  if (!arguments.shell.empty()) spec.shell = SlotSpec{arguments.shell, {}};
+  if (!arguments.fill.empty()) spec.fill = SlotSpec{arguments.fill, {}};
+  apply_slot_settings(spec, arguments.set, registry);
+  return spec;
+}
+
+double peak_rss_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return 1024.0 * static_cast<double>(usage.ru_maxrss);
+}
+
+/// One call of `routebench plan`, from its arguments to its outputs.
+class Plan {
+ public:
+  explicit Plan(const PlanArguments& arguments)
+      : arguments_(arguments),
+        judge_(task_of(arguments.task), printer_of(arguments.printer)),
+        planners_(load_planners(arguments.plugins)),
+        parallel_for_(parallel_loop(arguments.jobs)) {
+    require_all_loaded(planners_);
+    contender_.emplace(contender_of(arguments, planners_.registry), planners_.registry);
+  }
+
+  /// Returns the exit code.
+  int run() {
+    model_ = prepare_model(arguments_.model, judge_.task(), {.repair = arguments_.repair},
+                           parallel_for_);
+    print_warnings(arguments_.model, model_.sliced.warnings);
+    chosen_ = select_layers(arguments_.layers, model_.sliced.layers);
+    plan_and_judge();
+    const bool planned = cell_.verdict.outcome != Outcome::kFailed;
+    OutputSet outputs;
+    if (planned && !arguments_.gcode.empty()) add_gcode(outputs);
+    if (planned && !arguments_.svg.empty()) add_pictures(outputs);
+    if (!arguments_.json.empty() && arguments_.json != "-")
+      write_json(outputs, arguments_.json, document());
+    outputs.commit();
+    if (arguments_.json == "-") {
+      write_json(outputs, "-", document());
+    } else {
+      print_table(std::cout);
+    }
+    return cell_.verdict.outcome == Outcome::kValid ? 0 : kExitNotValid;
+  }
+
+ private:
+  void plan_and_judge() {
+    try {
+      planned_ = plan_layers(*contender_, model_, chosen_, judge_.task(), arguments_.seed, {},
+                             parallel_for_);
+    } catch (const Error& error) {
+      // A planner that breaks its contract is a result like any other.
+      cell_.verdict = {Outcome::kFailed, error.what()};
+      std::cerr << "routebench: " << arguments_.model << ": " << error.what() << '\n';
+      return;
+    }
+    cell_ = judge_layers(judge_, model_, chosen_, planned_, parallel_for_);
+    cell_.totals[metric_index("peak_rss_bytes")] = peak_rss_bytes();
+  }
+
+  [[nodiscard]] Json document() const {
+    return plan_document(
+        {*contender_, model_.sliced, judge_, arguments_.seed, chosen_.size(), cell_});
+  }
+
+  void add_gcode(OutputSet& outputs) const {
+    outputs.add(arguments_.gcode, [&](std::ostream& out) {
+      const std::vector<std::string> comments = {
+          "model = " + arguments_.model, "contender = " + text_of(json_of(*contender_), true)};
+      GcodeWriter writer(out, judge_.task(), judge_.printer(), comments);
+      for (std::size_t i = 0; i < chosen_.size(); ++i)
+        writer.write_layer(model_.sliced.layers[chosen_[i]], planned_[i]);
+      writer.finish();
+    });
+  }
+
+  void add_pictures(OutputSet& outputs) const {
+    outputs.add_folder(arguments_.svg);
+    std::optional<Point2> nozzle;
+    for (std::size_t i = 0; i < chosen_.size(); ++i) {
+      const Layer& layer = model_.sliced.layers[chosen_[i]];
+      outputs.add(layer_picture(arguments_.svg, layer.index),
+                  [&](std::ostream& out) { write_route_svg(out, layer, planned_[i], nozzle); });
+      if (const auto end = end_of(planned_[i].route)) nozzle = end;
+    }
+  }
+
+  void print_table(std::ostream& out) const {
+    const ContenderSpec& spec = contender_->spec();
+    out << "model      " << arguments_.model << ", " << chosen_.size() << " of "
+        << model_.sliced.layers.size() << " layers";
+    if (model_.sliced.report.repaired_layers > 0)
+      out << " (" << model_.sliced.report.repaired_layers << " repaired)";
+    out << "\ncontender  " << spec.name << ", order " << to_string(spec.order) << "\noutcome    "
+        << to_string(cell_.verdict.outcome);
+    if (!cell_.verdict.reason.empty()) out << ": " << cell_.verdict.reason;
+    out << '\n';
+    std::vector<Row> rows;
+    for (std::size_t i = 0; i < cell_.totals.size(); ++i)
+      if (cell_.totals[i])
+        rows.push_back({std::string(metric_table()[i].label), readable(*cell_.totals[i]),
+                        std::string(metric_table()[i].unit)});
+    if (!rows.empty()) out << '\n';
+    print_rows(out, rows);
+  }
+
+  const PlanArguments& arguments_;
+  Judge judge_;
+  PlannerSet planners_;
+  ParallelFor parallel_for_;
+  std::optional<Contender> contender_;
+  PreparedModel model_;
+  std::vector<std::size_t> chosen_;
+  std::vector<PlannedLayer> planned_;
+  JudgedCell cell_;
+};
+
+}  // namespace
+
+void add_plan_command(CLI::App& app, int& exit_code) {
+  const auto arguments = std::make_shared<PlanArguments>();
+  CLI::App& command = *app.add_subcommand("plan", "Plan the routes of one model and judge them");
+  add_model_argument(command, arguments->model);
+  command.add_option("--shell", arguments->shell, "Planner of the walls")->type_name("NAME");
+  command.add_option("--fill", arguments->fill, "Planner of the inside")->type_name("NAME");
+  add_repeated(command, "--set", arguments->set, "SLOT.KEY=VALUE",
+               "A planner's parameter, such as fill.angle_deg=30 (see routebench planners NAME)");
+  command
+      .add_option("--order", arguments->order,
+                  "island: finish one island before the next; stage: all walls before the inside")
+      ->type_name("island|stage")
+      ->capture_default_str();
+  add_task_option(command, arguments->task);
+  add_printer_option(command, arguments->printer);
+  command
+      .add_option("--layers", arguments->layers,
+                  "Plan only these, by index from 0, such as 3,10..20; skins are found on all")
+      ->type_name("LIST");
+  command.add_option("--gcode", arguments->gcode, "Write the routes as G-code")->type_name("FILE");
+  command.add_option("--svg", arguments->svg, "Draw the route of each layer into a folder")
+      ->type_name("DIR");
+  command
+      .add_option("--json", arguments->json,
+                  "Write every score of every layer; - is the standard output, alone")
+      ->type_name("FILE|-");
+  add_plugin_option(command, arguments->plugins);
+  add_jobs_option(command, arguments->jobs,
+                  "; planning times by the clock on the wall are to be trusted with 1 only");
+  command.add_option("--seed", arguments->seed, "For planners that draw lots")
+      ->type_name("N")
+      ->capture_default_str();
+  add_repair_flag(command, arguments->repair);
+  command.callback([arguments, &exit_code] { exit_code = Plan(*arguments).run(); });
+}
 
 }  // namespace routebench

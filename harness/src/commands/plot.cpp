@@ -118,7 +118,7 @@ int run_program(std::vector<std::string> arguments) {
 
 void add_plot_command(CLI::App& app, int& exit_code) {
   CLI::App* const command =
-      app.add_subcommand("plot", "Draw figures and tables of an experiment's results");
+      app.add_subcommand("plot", "draw figures and tables of an experiment's results");
   const auto options = std::make_shared<PlotOptions>();
   command->add_option("results", options->results, "folder of a run, or the results.sqlite in it")
       ->required();

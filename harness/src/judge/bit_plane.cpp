@@ -39,6 +39,10 @@ BitPlane::BitPlane(const SampleGrid& grid, const Polygons& polygons) : BitPlane(
     Word carry = 0;  // all ones while inside at a word's end
     for (std::size_t i = begin; i < begin + row_words_; ++i) {
       Word word = words_[i];
+      if (word == 0) {  // nothing changes here
+        words_[i] = carry;
+        continue;
+      }
       for (unsigned shift = 1; shift < kWordBits; shift *= 2) word ^= word << shift;
       words_[i] = word ^ carry;
       carry = (words_[i] >> (kWordBits - 1) & 1U) != 0 ? ~Word{0} : 0;

@@ -98,38 +98,54 @@ void grow(BitPlane& plane, const Polygons& polygons, double radius_mm) {
   }
 }
 
+std::size_t doubled_samples(const SampleGrid& grid, const std::vector<Run>& runs,
+                            const Task& task) {
+  BitPlane once(grid);
+  BitPlane twice(grid);
+  for (const Run& run : runs) add_passes(once, twice, run, task);
+  return twice.count();
+}
+
+/// Area of beads beyond the samples, as length x width.
+double area_beyond_mm2(const SampleGrid& grid, const std::vector<Run>& runs) {
+  double area = 0;
+  visit_beads(runs, [&](Point2 a, Point2 b, double width_mm) {
+    const SampleGrid::Shares over = grid.shares_over(a, b);
+    area += (1 - (over.leave - over.enter)) * distance(a, b) * width_mm;
+  });
+  return area;
+}
+
 }  // namespace
 
 Coverage measure_coverage(const LayerSamples& samples, std::size_t outline_samples,
                           const Demand& demand, const std::vector<Run>& runs, const Task& task) {
   const SampleGrid& grid = samples.grid;
-  BitPlane beads(grid);
-  double beyond_mm2 = 0;
-  visit_beads(runs, [&](Point2 a, Point2 b, double width_mm) {
-    add_capsule(beads, a, b, width_mm / 2);
-    const SampleGrid::Shares over = grid.shares_over(a, b);
-    beyond_mm2 += (1 - (over.leave - over.enter)) * distance(a, b) * width_mm;
-  });
-  BitPlane once(grid);
-  BitPlane twice(grid);
-  for (const Run& run : runs) add_passes(once, twice, run, task);
-  BitPlane within = samples.outline;
-  grow(within, demand.outline, task.line_width_mm / 2);
-
   const auto share = [outline_samples](double part) {
     return part / static_cast<double>(outline_samples);
   };
+  Coverage result;
+  result.doubled = share(static_cast<double>(doubled_samples(grid, runs, task)));
+
+  BitPlane beads(grid);
+  visit_beads(runs, [&beads](Point2 a, Point2 b, double width_mm) {
+    add_capsule(beads, a, b, width_mm / 2);
+  });
   const std::size_t under_beads = samples.outline.count(
       [](Word p, Word s, Word b) { return p & ~s & b; }, samples.sparse, beads);
   const std::size_t sparse =
       samples.outline.count([](Word p, Word s) { return p & s; }, samples.sparse);
   const double sparse_reached =
       sparse > 0 && task.density > 0 ? sparse_share_reached(demand.sparse, runs, task) : 1;
+  result.covered =
+      share(static_cast<double>(under_beads) + static_cast<double>(sparse) * sparse_reached);
+
+  BitPlane within = samples.outline;
+  grow(within, demand.outline, task.line_width_mm / 2);
   const std::size_t outside = beads.count([](Word b, Word in) { return b & ~in; }, within);
-  return {.covered = share(static_cast<double>(under_beads) +
-                           static_cast<double>(sparse) * sparse_reached),
-          .doubled = share(static_cast<double>(twice.count())),
-          .spilled = share(static_cast<double>(outside) + beyond_mm2 / grid.sample_mm2())};
+  result.spilled =
+      share(static_cast<double>(outside) + area_beyond_mm2(grid, runs) / grid.sample_mm2());
+  return result;
 }
 
 }  // namespace routebench::judging

@@ -11,7 +11,7 @@ namespace {
 constexpr double kPitchMm = 0.05;
 constexpr double kSamplesAcrossLine = 9;
 constexpr double kSamplesAcrossLayer = 200;
-constexpr double kMaxSamples = 67108864;  // 2^26: 8 MiB a plane
+constexpr double kMaxSamples = 4194304;  // 2^22: 512 KiB a plane
 
 SampleGrid grid_over(const Polygons& polygons, const Task& task) {
   const Box2 box = bounding_box(polygons);

@@ -9,8 +9,8 @@
 namespace routebench::judging {
 
 /// Samples 0.05 mm apart: closer for lines under 0.45 mm (nine across a line) and for layers under
-/// 10 mm across (two hundred across the layer), further apart where a layer would have more than
-/// 2^26 of them.
+/// 10 mm across (two hundred across the layer), further apart in boxes over 100 mm across, which
+/// get 2^22 of them: shares of an area are as exact as their number makes them.
 struct LayerSamples {
   SampleGrid grid;
   BitPlane outline;

@@ -24,6 +24,7 @@ struct Sample {
 
 std::vector<Sample> sample_boundary(const Polygons& polygons, double pitch_mm) {
   std::vector<Sample> samples;
+  samples.reserve(static_cast<std::size_t>(1.5 * perimeter_mm(polygons) / pitch_mm));
   const auto add_ring = [&](const Ring& ring) {
     for (std::size_t i = 0; i < ring.size(); ++i) {
       const Point2 a = ring[i];

@@ -25,6 +25,7 @@ SampleGrid::SampleGrid(const Polygons& polygons, double margin_mm, double pitch_
   // Both bounds: of the area, and of the longer side where the box is all but a line.
   pitch_mm_ = std::max(
       {pitch_mm, std::sqrt(size.x * size.y / max_samples), std::max(size.x, size.y) / max_samples});
+  steps_a_mm_ = 1 / pitch_mm_;
   columns_ = static_cast<std::size_t>(size.x / pitch_mm_) + 1;
   rows_ = static_cast<std::size_t>(size.y / pitch_mm_) + 1;
 }

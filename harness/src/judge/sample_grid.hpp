@@ -22,10 +22,10 @@ class SampleGrid {
   SampleGrid(const Polygons& polygons, double margin_mm, double pitch_mm, double max_samples);
 
   [[nodiscard]] Point2 to_steps(Point2 p) const noexcept {
-    return {(kCos * p.x + kSin * p.y - lower_.x) / pitch_mm_ - 0.5,
-            (kCos * p.y - kSin * p.x - lower_.y) / pitch_mm_ - 0.5};
+    return {(kCos * p.x + kSin * p.y - lower_.x) * steps_a_mm_ - 0.5,
+            (kCos * p.y - kSin * p.x - lower_.y) * steps_a_mm_ - 0.5};
   }
-  [[nodiscard]] double to_steps(double length_mm) const noexcept { return length_mm / pitch_mm_; }
+  [[nodiscard]] double to_steps(double length_mm) const noexcept { return length_mm * steps_a_mm_; }
 
   [[nodiscard]] double pitch_mm() const noexcept { return pitch_mm_; }
   [[nodiscard]] double sample_mm2() const noexcept { return pitch_mm_ * pitch_mm_; }
@@ -46,6 +46,7 @@ class SampleGrid {
 
   Point2 lower_;  // in the turned frame, mm
   double pitch_mm_;
+  double steps_a_mm_ = 1;
   std::size_t columns_ = 0;
   std::size_t rows_ = 0;
 };

@@ -62,11 +62,11 @@ class PartLedger {
   }
 
  private:
-  /// Half a line distance or less, as a power of two, so that no cell lies in two words.
+  /// About half a line distance, as a power of two: so no cell lies in two words.
   static std::size_t cell_steps(double line_distance_steps) {
     std::size_t steps = 1;
     while (2 * steps <= BitPlane::kWordBits &&
-           static_cast<double>(2 * steps) <= line_distance_steps / 2 * 1.05)
+           static_cast<double>(2 * steps) <= 0.75 * line_distance_steps)
       steps *= 2;
     return steps;
   }

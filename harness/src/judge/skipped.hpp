@@ -25,7 +25,7 @@ namespace routebench::judging {
 /// and neither are parts that are too narrow for a line.
 ///
 /// Cost linear in the samples' words, in the length of beads over the line distance, and in the
-///      cells of the average, of which about two to four lie side by side in a line distance.
+///      cells of the average, of which about two lie side by side in a line distance.
 [[nodiscard]] double skipped_area_mm2(const LayerSamples& samples, const Demand& demand,
                                       const std::vector<Run>& runs, const Task& task);
 

@@ -49,8 +49,9 @@ struct Slices {
 ///
 /// A vertex on a plane counts as above it: a cut at the height of a flat face is the limit from
 /// below, flat faces vanish, and a closed mesh gives closed rings. Where shells overlap the
-/// material is what any of them encloses (non-zero winding). Every coordinate lies on the grid; the
-/// layers do not depend on the order of triangles, the method or the loop that runs them.
+/// material is what any of them encloses (non-zero winding). Polygons and holes narrower than 1 um,
+/// or than the widest crack closed in their layer, are left out. Every coordinate lies on the grid;
+/// the layers do not depend on the order of triangles, the method or the loop that runs them.
 ///
 /// Takes   a mesh on z = 0. `model_name` is used in messages only.
 /// Returns one layer a plane that lies below the top, empty ones included; `solid` is left empty

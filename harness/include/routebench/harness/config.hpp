@@ -36,6 +36,7 @@ struct RunOptions {
 struct ConfiguredModel {
   std::string spec;    ///< as written
   std::string source;  ///< for slice_model: a relative path is made relative to the config's folder
+  bool optional = false;  ///< left out, with a note, where it cannot be had
 };
 
 /// One point of the sweep over [task] and [printer].

@@ -18,6 +18,9 @@
 
 namespace routebench {
 
+/// The slot that planners of a role fill: "shell", "fill".
+[[nodiscard]] std::string_view to_string(PlannerRole role);
+
 struct SlotSpec {
   std::string planner;
   ParamSet params;  ///< as given; see Registry::Entry::resolve
@@ -67,7 +70,8 @@ class Contender {
   ///        run: each layer's planners get one that is mixed from it and the layer's index.
   /// Throws Error{kStopped} when asked to stop; Error{kBadInput} naming planner and layer if a
   ///        planner throws anything else, or returns a stroke of fewer than two points, a
-  ///        coordinate that is not finite or a kilometre away, or a width that is not positive.
+  ///        coordinate that is not finite or a kilometre away, or a width that is
+  ///        not positive or more than a metre.
   ///        std::bad_alloc passes as it is.
   /// Cost   beside the planners' own near-linear in the layer's vertices.
   [[nodiscard]] PlannedLayer plan(const Layer& layer, const Demand& demand, const Task& task,

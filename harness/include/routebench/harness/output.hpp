@@ -38,7 +38,7 @@ class OutputSet {
     std::filesystem::path file;
   };
   std::vector<Pending> pending_;
-  std::vector<std::filesystem::path> written_;      ///< every file that was added
+  std::vector<std::filesystem::path> written_;      ///< every file that was added, once resolved
   std::vector<std::filesystem::path> new_folders_;  ///< made here and not committed
 };
 

@@ -37,7 +37,8 @@ void require_all_loaded(const PlannerSet& planners);
 
 struct SliceModelOptions {
   SliceMethod method = SliceMethod::kBucket;
-  bool repair = false;  ///< see ModelOptions and SliceOptions
+  bool repair = false;     ///< see ModelOptions and SliceOptions
+  bool find_skins = true;  ///< whether Layer::solid is wanted
 };
 
 /// A model cut into layers; the mesh itself is no longer held.
@@ -47,7 +48,7 @@ struct SlicedModel {
   std::optional<std::uint64_t> mesh_hash;  ///< see Model::content_hash
   SliceReport report;
   std::vector<std::string> warnings;  ///< of reading and slicing, one line each, without the spec
-  std::vector<Layer> layers;          ///< with `solid` set
+  std::vector<Layer> layers;          ///< with `solid` set if skins were asked for
   Point2 origin;  ///< lower corner of all layers together: where patterns are anchored
 };
 

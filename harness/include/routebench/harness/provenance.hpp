@@ -11,9 +11,10 @@ struct Provenance {
   std::string routebench_version;
   std::optional<std::string> git_commit;  ///< of the source tree when the program was built
   std::optional<bool> git_dirty;          ///< tracked files differed from that commit
+  std::string program_build_id;           ///< tells builds apart; empty if the linker left none
   std::string compiler;
   std::string compiler_flags;
-  std::string libraries_json;  ///< {"SQLite": "3.40.1", ...}
+  std::string libraries_json;  ///< {"SQLite": "3.40.1", ..., "program_build_id": "..."}
   std::string cpu;             ///< model name
   int cores = 0;               ///< that this process may use
   std::int64_t memory_bytes = 0;

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -100,11 +101,15 @@ struct KnownCell {
   Outcome outcome = Outcome::kValid;
   std::optional<std::string> route_hash;
   std::vector<int> repetitions;  ///< numbers of its timing samples, ascending
+  bool current = false;          ///< belongs to the last run's config
   double cell_wall_s = 0;
   double timeout_s = 0;  ///< the limits under which it was executed
   int memory_mb = 0;
-  std::optional<std::string> git_commit;  ///< of the program that executed it
+  std::string program_build_id;  ///< of the program that executed it
 };
+
+/// By cell key.
+using KnownCells = std::map<std::string, KnownCell>;
 
 /// The name of an outcome back to the outcome. Throws Error{kBadInput} for another name.
 [[nodiscard]] Outcome outcome_named(const std::string& name);
@@ -128,6 +133,11 @@ class ResultsWriter {
 
   [[nodiscard]] const std::filesystem::path& file() const noexcept;
 
+  [[nodiscard]] KnownCells known_cells();
+
+  /// Runs `writes`, which calls other members, so that all of it is stored or nothing.
+  void together(const std::function<void()>& writes);
+
   /// Adds the run to which all cells that are added from now on belong.
   void begin_run(const RunRecord& run);
   /// Notes the end of the run and puts a fresh file in its place.
@@ -141,7 +151,6 @@ class ResultsWriter {
   /// Stores the shape of a layer unless it is there.
   void add_layer_shape(std::int64_t model_id, const Layer& layer);
 
-  [[nodiscard]] std::optional<KnownCell> find_cell(const std::string& cell_key);
   /// Says that a cell of an earlier run belongs to this run's experiment, too.
   void reuse_cell(std::int64_t cell_id);
 
@@ -161,6 +170,11 @@ class ResultsWriter {
   std::unique_ptr<Impl> impl_;
 };
 
+/// What a database knows of cells; nothing if there is none yet in that folder.
+/// Throws Error{kBadInput} as ResultsWriter does.
+[[nodiscard]] KnownCells known_cells(const std::filesystem::path& folder,
+                                     const std::string& experiment);
+
 /// One cell as tables show it.
 struct StoredCell {
   std::string model;
@@ -177,8 +191,8 @@ struct StoredCell {
 /// Throws Error{kBadInput} if there is none.
 [[nodiscard]] std::filesystem::path results_file(const std::filesystem::path& folder_or_file);
 
-/// The cells of the last run's config: those that it executed and those that it found done. In the
-/// order in which the config names models, contenders and settings.
+/// The cells of the last run's config: those that it executed and those that it found done, setting
+/// by setting, model by model.
 /// Throws Error{kBadInput} for a file that is no results database of this version.
 [[nodiscard]] std::vector<StoredCell> current_cells(const std::filesystem::path& file);
 

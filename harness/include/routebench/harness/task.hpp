@@ -14,7 +14,7 @@ namespace routebench {
 /// The gate's limits: what a route may miss or overdo and still count as having done the task.
 struct GateLimits {
   double covered_min = 0.95;
-  double skipped_max = 0.035;
+  double skipped_max = 0.008;
   double worst_layer_max = 0.4;
   double deposit_min = 0.85;
   double deposit_max = 1.15;

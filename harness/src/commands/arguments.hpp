@@ -1,0 +1,65 @@
+#pragma once
+/// Options that several subcommands have, and what their texts mean.
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "json_parts.hpp"
+#include "routebench/harness/contender.hpp"
+#include "routebench/harness/output.hpp"
+#include "routebench/harness/task.hpp"
+#include "routebench/planning/registry.hpp"
+
+namespace routebench {
+
+/// Adds an option that may be given several times, one value each.
+CLI::Option* add_repeated(CLI::App& command, const std::string& name,
+                          std::vector<std::string>& values, const std::string& type,
+                          const std::string& help);
+
+/// The model that a command works on.
+void add_model_argument(CLI::App& command, std::string& model);
+
+/// The options by which tasks and printers are set. Their keys stand at the end of the help.
+void add_task_option(CLI::App& command, std::vector<std::string>& settings);
+void add_printer_option(CLI::App& command, std::vector<std::string>& settings);
+void add_plugin_option(CLI::App& command, std::vector<std::string>& files);
+void add_jobs_option(CLI::App& command, int& jobs, const std::string& remark = {});
+void add_repair_flag(CLI::App& command, bool& repair);
+
+/// The defaults with `key=value` settings applied in order.
+/// Throws Error for what set_task_value and check_task refuse, and for a text without '='.
+[[nodiscard]] Task task_of(const std::vector<std::string>& settings);
+[[nodiscard]] Printer printer_of(const std::vector<std::string>& settings);
+
+/// Puts `slot.key=value` settings into a contender's slots. A value is read as the planner declares
+/// the parameter. Throws Error{kBadUsage} for what is no such setting or whose slot is empty;
+/// Error{kBadInput} for unknown planners.
+void apply_slot_settings(ContenderSpec& spec, const std::vector<std::string>& settings,
+                         const Registry& registry);
+
+/// Adds a JSON document to the outputs, or writes it to the standard output if the file is "-".
+void write_json(OutputSet& outputs, const std::filesystem::path& file, const Json& document);
+
+/// The file for one layer's picture in a folder: layer_0012.svg.
+[[nodiscard]] std::filesystem::path layer_picture(const std::filesystem::path& folder,
+                                                  int layer_index);
+
+/// Prints warnings of a model to the standard error, one line each.
+void print_warnings(const std::string& model, const std::vector<std::string>& warnings);
+
+/// Label, value and unit of one line of a table for people.
+struct Row {
+  std::string label;
+  std::string value;
+  std::string unit;
+};
+/// Rows with aligned columns: labels to the left, values to the right.
+void print_rows(std::ostream& out, const std::vector<Row>& rows);
+
+/// A number for people: whole ones in full, others with a sensible number of digits.
+[[nodiscard]] std::string readable(double value);
+
+}  // namespace routebench

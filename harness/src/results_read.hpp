@@ -1,0 +1,11 @@
+#pragma once
+/// What writers of a results database read of it.
+
+#include "routebench/harness/results.hpp"
+#include "sqlite.hpp"
+
+namespace routebench {
+
+[[nodiscard]] KnownCells read_known_cells(Database& database);
+
+}  // namespace routebench

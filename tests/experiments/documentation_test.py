@@ -1,0 +1,64 @@
+"""The documentation tells the truth: its commands run, its tables are complete."""
+
+import os
+import re
+import shutil
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+SOURCE = Path(__file__).resolve().parents[2]
+PROGRAM = Path(os.environ["ROUTEBENCH_PROGRAM"])
+
+
+def shell_blocks(page: Path) -> list[str]:
+    """The blocks of a page that are marked ```sh, in order."""
+    return re.findall(r"^```sh\n(.*?)^```$", page.read_text(encoding="utf-8"), re.M | re.S)
+
+
+class CommandsTest(unittest.TestCase):
+    """Runs every command of the README as its reader would, in an empty folder."""
+
+    def test_commands_of_the_readme_run(self) -> None:
+        blocks = shell_blocks(SOURCE / "README.md")
+        self.assertGreater(len(blocks), 4)
+        with tempfile.TemporaryDirectory() as folder:
+            shutil.copytree(SOURCE / "experiments", Path(folder) / "experiments")
+            path = f"{PROGRAM.parent}{os.pathsep}{os.environ['PATH']}"
+            for block in blocks:
+                with self.subTest(block=block):
+                    done = subprocess.run(
+                        ["bash", "-euo", "pipefail", "-c", block],
+                        cwd=folder,
+                        env={**os.environ, "PATH": path},
+                        capture_output=True,
+                        text=True,
+                        check=False,
+                    )
+                    self.assertEqual(done.returncode, 0, done.stderr)
+
+
+class TablesTest(unittest.TestCase):
+    """Compares the README's tables with what the program knows."""
+
+    def test_every_metric_is_explained(self) -> None:
+        readme = (SOURCE / "README.md").read_text(encoding="utf-8")
+        source = (SOURCE / "harness" / "src" / "metrics.cpp").read_text(encoding="utf-8")
+        names = re.findall(r'MetricInfo\{\s*"(\w+)"', source)
+        self.assertGreater(len(names), 20)
+        self.assertEqual([name for name in names if f"`{name}`" not in readme], [])
+
+    def test_every_command_is_mentioned(self) -> None:
+        readme = (SOURCE / "README.md").read_text(encoding="utf-8")
+        usage = subprocess.run(
+            [PROGRAM, "--help"], capture_output=True, text=True, check=True
+        ).stdout
+        commands = re.findall(r"^  (\w[\w-]*) {2,}\w", usage, re.M)
+        self.assertGreater(len(commands), 5)
+        missing = [name for name in commands if f"routebench {name}" not in readme]
+        self.assertEqual(missing, [])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,296 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <numbers>
+#include <random>
+#include <sstream>
+
+#include "fixed_point.hpp"
+#include "gcode_reader.hpp"
+#include "random_polygons.hpp"
+#include "routebench/geometry/error.hpp"
+#include "routebench/geometry/grid.hpp"
+#include "routebench/geometry/vec.hpp"
+#include "routebench/harness/gcode_writer.hpp"
+
+namespace routebench {
+namespace {
+
+using test::GcodeRun;
+using test::read_gcode;
+
+struct Print {
+  std::vector<Layer> layers;
+  std::vector<PlannedLayer> planned;
+};
+
+/// Strokes of 2 to 40 points, from 0.001 mm to several mm a step, on three layers of one plate.
+Print random_print(std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> place(-40, 40), log_step(-3, 1), angle(0, 6.283);
+  std::uniform_int_distribution<int> count(2, 40), kind(0, 2);
+  Print print;
+  for (int index = 0; index < 3; ++index) {
+    print.layers.push_back({.index = index,
+                            .z_mm = 0.2 * index + 0.1,
+                            .height_mm = 0.2,
+                            .polygons = {{test::rectangle(-50, -50, 50, 50), {}}},
+                            .solid = {}});
+    PlannedLayer planned;
+    for (int s = 0; s < 30; ++s) {
+      Stroke stroke{{snap(Point2{place(random), place(random)})}, s % 2 == 0 ? 0.45 : 0.6};
+      for (int k = count(random); k > 1; --k) {
+        const double step = std::pow(10, log_step(random)), a = angle(random);
+        const Point2 from = stroke.points.back();
+        stroke.points.push_back(
+            snap(Point2{from.x + step * std::cos(a), from.y + step * std::sin(a)}));
+      }
+      planned.route.strokes.push_back(stroke);
+      planned.kinds.push_back(static_cast<StrokeKind>(kind(random)));
+    }
+    print.planned.push_back(planned);
+  }
+  return print;
+}
+
+std::string gcode_of(const Print& print, const Task& task, const Printer& printer) {
+  std::ostringstream out;
+  GcodeWriter writer(out, task, printer, {});
+  for (std::size_t i = 0; i < print.layers.size(); ++i)
+    writer.write_layer(print.layers[i], print.planned[i]);
+  writer.finish();
+  return out.str();
+}
+
+/// A rectangle with round ends, 0.2 mm high.
+double section_mm2(double width_mm) { return (width_mm - 0.2) * 0.2 + std::numbers::pi * 0.01; }
+
+/// What the routes themselves say.
+struct Sums {
+  double extrude_mm = 0, travel_mm = 0, volume_mm3 = 0;
+  int long_travels = 0;
+};
+Sums sums_of(const Print& print, double long_mm) {
+  Sums sums;
+  std::optional<Point2> nozzle;
+  for (const PlannedLayer& planned : print.planned) {
+    for (const Stroke& stroke : planned.route.strokes) {
+      if (nozzle) {
+        const double gap = distance(*nozzle, stroke.points.front());
+        sums.travel_mm += gap;
+        sums.long_travels += gap >= long_mm ? 1 : 0;
+      }
+      for (std::size_t i = 1; i < stroke.points.size(); ++i) {
+        const double length = distance(stroke.points[i - 1], stroke.points[i]);
+        sums.extrude_mm += length;
+        sums.volume_mm3 += length * section_mm2(stroke.width_mm);
+      }
+      nozzle = stroke.points.back();
+    }
+  }
+  return sums;
+}
+
+TEST(Gcode, AnIndependentReaderFindsTheSameSums) {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const Print print = random_print(seed);
+    const Printer printer;
+    const GcodeRun run = read_gcode(gcode_of(print, {}, printer));
+    const Sums sums = sums_of(print, printer.retract_over_mm);
+    EXPECT_NEAR(run.extrude_mm, sums.extrude_mm, 1e-5 * sums.extrude_mm);
+    EXPECT_NEAR(run.travel_mm, sums.travel_mm, 1e-5 * sums.travel_mm);
+    EXPECT_EQ(run.retractions, sums.long_travels);
+    EXPECT_NEAR(run.pulled_mm, 0, 1e-9);
+    const double filament_section = std::numbers::pi * 1.75 * 1.75 / 4;
+    EXPECT_NEAR(run.filament_mm * filament_section, sums.volume_mm3, 1e-3 * sums.volume_mm3);
+  }
+}
+
+TEST(Gcode, PointsOnTheGridComeBackAsTheyWere) {
+  const Print print = random_print(7);
+  const GcodeRun run = read_gcode(gcode_of(print, {}, {}));
+  std::size_t at = 0;
+  for (std::size_t i = 0; i < print.layers.size(); ++i) {
+    for (const Stroke& stroke : print.planned[i].route.strokes) {
+      ASSERT_LT(at, run.strokes.size());
+      std::vector<Point2> points = run.strokes[at];
+      for (Point2& p : points) p = snap(p);
+      EXPECT_EQ(points, stroke.points);
+      // The nozzle is at the top of the slab that a cut stands for.
+      EXPECT_NEAR(run.stroke_z_mm[at], print.layers[i].z_mm + 0.1, 1e-5);
+      ++at;
+    }
+  }
+  EXPECT_EQ(at, run.strokes.size());
+}
+
+Print two_strokes(Point2 end_of_first, Point2 start_of_second) {
+  Print print;
+  print.layers.push_back(
+      {.index = 0,
+       .z_mm = 0.1,
+       .height_mm = 0.2,
+       .polygons = {{test::rectangle(0, 0, 10, 10), {}}, {test::rectangle(20, 0, 30, 10), {}}},
+       .solid = {}});
+  PlannedLayer planned;
+  planned.route.strokes = {{{{1, 1}, end_of_first}, 0.45},
+                           {{start_of_second, {start_of_second.x + 1, 5}}, 0.45}};
+  planned.kinds = {StrokeKind::kDense, StrokeKind::kDense};
+  print.planned.push_back(planned);
+  return print;
+}
+
+TEST(Gcode, RetractsByThePrintersPolicy) {
+  Printer printer;
+  const auto retractions = [&](Point2 from, Point2 to) {
+    return read_gcode(gcode_of(two_strokes(from, to), {}, printer)).retractions;
+  };
+  EXPECT_EQ(retractions({5, 1}, {5, 3}), 1) << "a travel of exactly the limit";
+  EXPECT_EQ(retractions({5, 1}, {5, 2.999}), 0);
+  EXPECT_EQ(retractions({5, 1}, {6.2, 2.2}), 0);
+  printer.retract_policy = RetractPolicy::kManhattan;
+  EXPECT_EQ(retractions({5, 1}, {6.2, 2.2}), 1) << "1.2 + 1.2 is over 2";
+  printer.retract_policy = RetractPolicy::kLengthAndCrossing;
+  EXPECT_EQ(retractions({5, 1}, {5, 9}), 0) << "long, but inside";
+  EXPECT_EQ(retractions({5, 1}, {25, 1}), 1) << "long and outside";
+}
+
+TEST(Gcode, GapsThatTheTaskJoinsAreNeverRetracted) {
+  Printer printer;
+  printer.retract_over_mm = 0;
+  const Task task;
+  const auto run = [&](Point2 to) {
+    return read_gcode(gcode_of(two_strokes({5, 1}, to), task, printer));
+  };
+  EXPECT_EQ(run({5.009, 1}).retractions, 0);
+  EXPECT_EQ(run({5.011, 1}).retractions, 1);
+  EXPECT_EQ(run({5, 1}).strokes.size(), 1u) << "without a gap there is no move";
+}
+
+TEST(Gcode, LiftsOnRetractingTravelsOnly) {
+  Printer printer;
+  printer.lift_mm = 0.5;
+  const GcodeRun lifted = read_gcode(gcode_of(two_strokes({5, 1}, {5, 9}), {}, printer));
+  ASSERT_EQ(lifted.travel_heights_mm.size(), 1u);
+  EXPECT_NEAR(lifted.travel_heights_mm[0], 0.7, 1e-9);
+  EXPECT_NEAR(lifted.stroke_z_mm[1], 0.2, 1e-9) << "and comes down before the stroke";
+  const GcodeRun flat = read_gcode(gcode_of(two_strokes({5, 1}, {5, 2}), {}, printer));
+  EXPECT_NEAR(flat.travel_heights_mm[0], 0.2, 1e-9);
+}
+
+TEST(Gcode, TheWayFromOneLayerToTheNextIsATravel) {
+  Print print = two_strokes({5, 1}, {5, 2});
+  print.layers.push_back(print.layers[0]);
+  print.layers.push_back(print.layers[0]);
+  print.layers[1].index = 1;
+  print.layers[2].index = 2;
+  print.layers[2].z_mm = 0.5;
+  print.planned.push_back({});  // an empty layer is passed over
+  print.planned.push_back(print.planned[0]);
+  const std::string gcode = gcode_of(print, {}, {});
+  const GcodeRun run = read_gcode(gcode);
+  EXPECT_NEAR(run.travel_mm, 1 + distance({6, 5}, {1, 1}) + 1, 1e-9);
+  EXPECT_EQ(run.retractions, 1);
+  ASSERT_EQ(run.travel_heights_mm.size(), 3u);
+  EXPECT_NEAR(run.travel_heights_mm[1], 0.6, 1e-9);
+  EXPECT_EQ(std::count(run.comments.begin(), run.comments.end(), ";LAYER_CHANGE"), 2);
+  EXPECT_EQ(std::count(run.comments.begin(), run.comments.end(), ";Z:0.6"), 1);
+  EXPECT_EQ(std::count(run.comments.begin(), run.comments.end(), ";HEIGHT:0.2"), 2);
+}
+
+TEST(Gcode, MarksWhatEachStrokeIs) {
+  Print print = two_strokes({5, 1}, {5, 2});
+  // Around the first island: the outermost wall, the one inside it, dense and sparse lines.
+  const auto loop = [](double inset) {
+    Ring ring = test::rectangle(inset, inset, 10 - inset, 10 - inset);
+    ring.push_back(ring.front());
+    return Stroke{ring, 0.45};
+  };
+  print.planned[0].route.strokes = {
+      loop(0.225), loop(0.632), {{{2, 2}, {3, 2}}, 0.45}, {{{2, 3}, {3, 3}}, 0.6}};
+  print.planned[0].kinds = {StrokeKind::kWall, StrokeKind::kWall, StrokeKind::kDense,
+                            StrokeKind::kSparse};
+  std::vector<std::string> marks;
+  for (const std::string& comment : read_gcode(gcode_of(print, {}, {})).comments)
+    if (comment.starts_with(";TYPE:") || comment.starts_with(";WIDTH:")) marks.push_back(comment);
+  EXPECT_EQ(marks, (std::vector<std::string>{";TYPE:External perimeter", ";WIDTH:0.45",
+                                             ";TYPE:Perimeter", ";TYPE:Solid infill",
+                                             ";TYPE:Internal infill", ";WIDTH:0.6"}));
+}
+
+TEST(Gcode, MovesThatVanishAreDroppedAndVeryShortOnesStillPush) {
+  Print print = two_strokes({5, 1}, {5, 2});
+  Stroke& stroke = print.planned[0].route.strokes[0];
+  stroke.points = {{1, 1}, {1, 1}, {1 + 1e-9, 1}, {2, 1}};
+  for (int i = 1; i <= 5000; ++i) stroke.points.push_back({2, 1 + i * 0.0005});
+  const std::string gcode = gcode_of(print, {}, {});
+  const GcodeRun run = read_gcode(gcode);
+  ASSERT_EQ(run.strokes.size(), 2u) << "a move without E would split the stroke";
+  EXPECT_EQ(run.strokes[0].size(), 2u + 5000u);
+  const double share = section_mm2(0.45) / (std::numbers::pi * 1.75 * 1.75 / 4);
+  EXPECT_NEAR(run.filament_mm, share * run.extrude_mm, 1e-3 * share * run.extrude_mm);
+  EXPECT_EQ(gcode.find("-0 "), gcode.npos);
+  EXPECT_EQ(gcode.find("E0 "), gcode.npos);
+}
+
+TEST(Gcode, TheHeadTellsWhatItIs) {
+  std::ostringstream out;
+  const std::vector<std::string> comments = {"model = a\nG28\rb"};
+  GcodeWriter(out, {}, {}, comments).finish();
+  const std::string text = out.str();
+  EXPECT_TRUE(text.starts_with("; generated by routebench "));
+  EXPECT_NE(text.find("\n; model = a G28 b\n"), text.npos) << "a comment cannot become a command";
+  EXPECT_NE(text.find("\n; task.line_width_mm = 0.45\n"), text.npos);
+  EXPECT_NE(text.find("\n; printer.retract_over_mm = 2\n"), text.npos);
+  EXPECT_NE(text.find("\nM83"), text.npos);
+}
+
+TEST(Gcode, AFlavourThatIsNotWrittenIsRefused) {
+  std::ostringstream out;
+  Printer printer;
+  printer.flavour = "abc";
+  EXPECT_THROW(GcodeWriter(out, {}, printer, {}), Error);
+  EXPECT_TRUE(out.str().empty());
+}
+
+TEST(FixedPoint, AgreesWithThePrinterOfTheLibrary) {
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> value(-2000, 2000);
+  for (int i = 0; i < 20000; ++i) {
+    const int decimals = i % 8;
+    // Numbers that are exact decimals up to the last place: no tie can be broken either way.
+    const std::int64_t units = std::llrint(value(random) * 1000);
+    std::string text;
+    append_units(text, units, decimals);
+    char expected[64];
+    std::snprintf(expected, sizeof expected, "%.*f", decimals,
+                  static_cast<double>(units) / std::pow(10, decimals));
+    EXPECT_DOUBLE_EQ(std::stod(text), std::stod(expected));
+    if (decimals > 0 && text.find('.') != text.npos) {
+      EXPECT_NE(text.back(), '0');
+    }
+  }
+}
+
+TEST(FixedPoint, HandlesTheEdges) {
+  const auto text_of = [](double value, int decimals) {
+    std::string text;
+    append_fixed(text, value, decimals);
+    return text;
+  };
+  EXPECT_EQ(text_of(-0.0000001, 5), "0");
+  EXPECT_EQ(text_of(-0.0, 7), "0");
+  EXPECT_EQ(text_of(0.00001, 5), "0.00001");
+  EXPECT_EQ(text_of(-0.5, 1), "-0.5");
+  EXPECT_EQ(text_of(100, 3), "100");
+  EXPECT_EQ(text_of(-1200.25, 3), "-1200.25");
+  std::string lowest;
+  append_units(lowest, std::numeric_limits<std::int64_t>::min(), 3);
+  EXPECT_EQ(lowest, "-9223372036854775.808");
+}
+
+}  // namespace
+}  // namespace routebench
