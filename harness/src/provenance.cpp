@@ -70,7 +70,7 @@ std::string program_build_id() {
   return ids;
 }
 
-std::string libraries_json(const std::string& build_id) {
+std::string libraries_json() {
   nlohmann::json libraries{
       {"SQLite", sqlite3_libversion()},
       {"CLI11", CLI11_VERSION},
@@ -79,8 +79,7 @@ std::string libraries_json(const std::string& build_id) {
                                 NLOHMANN_JSON_VERSION_PATCH})},
       {"CGAL", kCgalVersion},
       {"Boost", kBoostVersion},
-      {"Clipper", kClipperVersion},
-      {"program_build_id", build_id}};
+      {"Clipper", kClipperVersion}};
   return libraries.dump();
 }
 
@@ -130,7 +129,7 @@ Provenance collect_provenance() {
   here.compiler = kCompiler;
   here.compiler_flags = kCompilerFlags;
   here.program_build_id = program_build_id();
-  here.libraries_json = libraries_json(here.program_build_id);
+  here.libraries_json = libraries_json();
   here.cpu = value_in_file("/proc/cpuinfo", "model name");
   here.cores = usable_cores();
   here.memory_bytes = static_cast<std::int64_t>(sysconf(_SC_PHYS_PAGES)) * sysconf(_SC_PAGESIZE);

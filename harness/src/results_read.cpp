@@ -38,7 +38,7 @@ KnownCells read_known_cells(Database& database) {
                    "WITH origin AS MATERIALIZED (SELECT run_id,"
                    " json_extract(config_resolved_json, '$.run.timeout_s') AS timeout_s,"
                    " json_extract(config_resolved_json, '$.run.memory_mb') AS memory_mb,"
-                   " json_extract(libraries_json, '$.program_build_id') AS build_id FROM run)"
+                   " program_build_id AS build_id FROM run)"
                    " SELECT cell_key, cell_id, outcome, route_hash, cell_wall_s, timeout_s,"
                    " memory_mb, build_id, cell_id IN (SELECT cell_id FROM current_cell)"
                    " FROM cell JOIN origin USING(run_id)");

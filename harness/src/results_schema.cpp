@@ -15,7 +15,7 @@ CREATE TABLE run(run_id INTEGER PRIMARY KEY, experiment TEXT NOT NULL, started_u
   finished_utc TEXT, seed INTEGER NOT NULL, config_text TEXT NOT NULL,
   config_resolved_json TEXT NOT NULL, command_line TEXT NOT NULL, routebench_version TEXT NOT NULL,
   git_commit TEXT, git_dirty INTEGER, compiler TEXT NOT NULL, compiler_flags TEXT NOT NULL,
-  libraries_json TEXT NOT NULL, cpu TEXT NOT NULL, cores INTEGER NOT NULL,
+  program_build_id TEXT NOT NULL, libraries_json TEXT NOT NULL, cpu TEXT NOT NULL, cores INTEGER NOT NULL,
   memory_bytes INTEGER NOT NULL, os TEXT NOT NULL, plugins_json TEXT NOT NULL);
 CREATE TABLE model(model_id INTEGER PRIMARY KEY, spec TEXT NOT NULL, mesh_hash TEXT NOT NULL,
   layers_hash TEXT NOT NULL, triangles INTEGER NOT NULL, layers INTEGER NOT NULL,

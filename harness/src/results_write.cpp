@@ -210,7 +210,7 @@ void ResultsWriter::together(const std::function<void()>& writes) {
 void ResultsWriter::begin_run(const RunRecord& run) {
   const Provenance& from = run.provenance;
   Statement insert = impl_->sql(
-      "INSERT INTO run VALUES(NULL, ?, ?, NULL, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+      "INSERT INTO run VALUES(NULL, ?, ?, NULL, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   insert.bind(std::string_view(run.experiment))
       .bind(std::string_view(utc_now()))
       .bind(static_cast<std::int64_t>(run.seed))
@@ -222,6 +222,7 @@ void ResultsWriter::begin_run(const RunRecord& run) {
   from.git_dirty ? insert.bind(std::int64_t{*from.git_dirty}) : insert.bind_null();
   insert.bind(std::string_view(from.compiler))
       .bind(std::string_view(from.compiler_flags))
+      .bind(std::string_view(from.program_build_id))
       .bind(std::string_view(from.libraries_json))
       .bind(std::string_view(from.cpu))
       .bind(std::int64_t{from.cores})

@@ -49,6 +49,20 @@ class TablesTest(unittest.TestCase):
         self.assertGreater(len(names), 20)
         self.assertEqual([name for name in names if f"`{name}`" not in readme], [])
 
+    def test_every_key_of_a_config_is_explained(self) -> None:
+        page = (SOURCE / "experiments" / "README.md").read_text(encoding="utf-8")
+        source = SOURCE / "harness" / "src"
+        config = (source / "config.cpp").read_text(encoding="utf-8")
+        lists = re.findall(r"k(?:Top|Run|Contender)Keys\{(.*?)\};", config, re.S)
+        self.assertEqual(len(lists), 3)
+        keys = re.findall(r'"(\w+)"', " ".join(lists))
+        task = (source / "task.cpp").read_text(encoding="utf-8")
+        keys += re.findall(r'visit\("(\w+)"', task)
+        self.assertGreater(len(keys), 40)
+        # A foreign slicer as a contender is refused for the time being.
+        missing = [key for key in keys if f"`{key}`" not in page and key != "slicer"]
+        self.assertEqual(missing, ["task", "printer", "run", "contender"])
+
     def test_every_command_is_mentioned(self) -> None:
         readme = (SOURCE / "README.md").read_text(encoding="utf-8")
         usage = subprocess.run(

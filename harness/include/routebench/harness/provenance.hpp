@@ -14,7 +14,7 @@ struct Provenance {
   std::string program_build_id;           ///< tells builds apart; empty if the linker left none
   std::string compiler;
   std::string compiler_flags;
-  std::string libraries_json;  ///< {"SQLite": "3.40.1", ..., "program_build_id": "..."}
+  std::string libraries_json;  ///< {"SQLite": "3.40.1", ...}
   std::string cpu;             ///< model name
   int cores = 0;               ///< that this process may use
   std::int64_t memory_bytes = 0;
