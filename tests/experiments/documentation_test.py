@@ -1,5 +1,6 @@
 """The documentation tells the truth: its commands run, its tables are complete."""
 
+import json
 import os
 import re
 import shutil
@@ -62,6 +63,19 @@ class TablesTest(unittest.TestCase):
         # A foreign slicer as a contender is refused for the time being.
         missing = [key for key in keys if f"`{key}`" not in page and key != "slicer"]
         self.assertEqual(missing, ["task", "printer", "run", "contender"])
+
+    def test_every_planner_and_parameter_is_explained(self) -> None:
+        page = (SOURCE / "planners" / "README.md").read_text(encoding="utf-8")
+        listed = subprocess.run(
+            [PROGRAM, "planners", "--json"], capture_output=True, text=True, check=True
+        ).stdout
+        planners = json.loads(listed)["planners"]
+        self.assertGreater(len(planners), 1)
+        for planner in planners:
+            with self.subTest(planner=planner["name"]):
+                section = page.split(f"## `{planner['name']}`\n")[1].split("\n## ")[0]
+                names = [parameter["name"] for parameter in planner["params"]]
+                self.assertEqual([name for name in names if f"`{name}`" not in section], [])
 
     def test_every_command_is_mentioned(self) -> None:
         readme = (SOURCE / "README.md").read_text(encoding="utf-8")
