@@ -80,6 +80,24 @@ std::vector<ParamSet> parameter_corners(const std::vector<ParamSchema>& schema, 
   return sets;
 }
 
+/// Parameters with which a planner does as its paper did and leaves the polygons: the judge calls
+/// that off task, and a test of the planner's own shows it.
+struct Faithful {
+  std::string planner, param;
+  ParamValue value;
+};
+const std::vector<Faithful>& faithful() {
+  static const std::vector<Faithful> all{};
+  return all;
+}
+
+bool leaves_as_published(const std::string& planner, const ParamSet& params) {
+  return std::any_of(faithful().begin(), faithful().end(), [&](const Faithful& f) {
+    const auto given = params.find(f.param);
+    return f.planner == planner && given != params.end() && given->second == f.value;
+  });
+}
+
 std::string text(const ParamSet& params) {
   std::string all;
   for (const auto& [name, value] : params) all += name + "=" + to_string(value) + " ";
@@ -127,14 +145,17 @@ class Contract : public testing::TestWithParam<std::tuple<std::string, test::Nas
 
   /// Calls check(planner, context) for every corner.
   template <typename Check>
-  void for_all(Check&& check) const {
+  void for_all(Check&& check) {
     const bool many_islands = layer().polygons.size() > 100;  // slow; and much alike
     for (const ParamSet& params : parameter_corners(entry().params, many_islands)) {
       SCOPED_TRACE(text(params));
+      inside_ = !leaves_as_published(entry().info.name, params);
       const auto planner = entry().make(params);
       for (const PlanContext& context : contexts(entry().info.role)) check(*planner, context);
     }
   }
+
+  bool inside_ = true;  ///< whether the parameters that are being checked promise to stay inside
 };
 
 TEST_P(Contract, StrokesAreSoundAndLieOnTheGridInsideThePolygons) {
@@ -152,7 +173,7 @@ TEST_P(Contract, StrokesAreSoundAndLieOnTheGridInsideThePolygons) {
         ASSERT_NE(stroke.points[i - 1], stroke.points[i]);
         outside_mm += edges.outside_length_mm(stroke.points[i - 1], stroke.points[i]);
       }
-      ASSERT_LE(outside_mm, kToleranceMm);
+      if (inside_) ASSERT_LE(outside_mm, kToleranceMm);
     }
   });
 }
