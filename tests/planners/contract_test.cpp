@@ -173,7 +173,9 @@ TEST_P(Contract, StrokesAreSoundAndLieOnTheGridInsideThePolygons) {
         ASSERT_NE(stroke.points[i - 1], stroke.points[i]);
         outside_mm += edges.outside_length_mm(stroke.points[i - 1], stroke.points[i]);
       }
-      if (inside_) ASSERT_LE(outside_mm, kToleranceMm);
+      if (inside_) {
+        ASSERT_LE(outside_mm, kToleranceMm);
+      }
     }
   });
 }
