@@ -87,7 +87,8 @@ struct Faithful {
   ParamValue value;
 };
 const std::vector<Faithful>& faithful() {
-  static const std::vector<Faithful> all{};
+  static const std::vector<Faithful> all{
+      {"rectilinear", "published", std::string("simple_slicer")}};
   return all;
 }
 
