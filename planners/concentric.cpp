@@ -12,6 +12,7 @@
 #include "concentric/pockets.hpp"
 #include "concentric/rings.hpp"
 #include "concentric/tree_link.hpp"
+#include "routebench/geometry/edge_grid.hpp"
 #include "routebench/geometry/vec.hpp"
 #include "routebench/planning/frame.hpp"
 #include "routebench/planning/nearest_grid.hpp"
@@ -36,7 +37,7 @@ struct ConcentricParams {
   Link link = Link::kTree;
   SeamParams seam;
   Thin thin = Thin::kFill;
-  double min_gap = 0.3;
+  double min_gap = 0.5;
 
   void bind(ParamBinder& bind) {
     bind("variant", variant, {{"default", Variant::kDefault}, {"published", Variant::kPublished}},
@@ -123,10 +124,17 @@ class LoopOrder {
  private:
   [[nodiscard]] bool inside_out() const { return params_.order == Order::kInsideOut; }
 
-  void lay(std::vector<Point2> points) {
-    if (points.size() < 2) return;
-    nozzle_ = points.back();
-    strokes_.push_back({std::move(points), context_.line_width_mm});
+  /// Lays lines that run from the outside in.
+  void lay_all(std::vector<std::vector<Point2>> lines) {
+    if (inside_out()) {
+      std::reverse(lines.begin(), lines.end());
+      for (std::vector<Point2>& line : lines) std::reverse(line.begin(), line.end());
+    }
+    for (std::vector<Point2>& line : lines) {
+      if (line.size() < 2) continue;
+      nozzle_ = line.back();
+      strokes_.push_back({std::move(line), context_.line_width_mm});
+    }
   }
 
   [[nodiscard]] std::size_t seam_of(std::uint32_t loop) const {
@@ -140,12 +148,7 @@ class LoopOrder {
     for (const std::uint32_t root : forest_.roots) groups[linker.group_of(root)].push_back(root);
     while (const auto root = roots.nearest(nozzle_)) {
       for (const std::uint32_t other : groups[linker.group_of(*root)]) roots.remove(other);
-      std::vector<std::vector<Point2>> lines = linker.strokes_from(*root, seam_of(*root));
-      if (inside_out()) {
-        std::reverse(lines.begin(), lines.end());
-        for (std::vector<Point2>& line : lines) std::reverse(line.begin(), line.end());
-      }
-      for (std::vector<Point2>& line : lines) lay(std::move(line));
+      lay_all(linker.strokes_from(*root, seam_of(*root)));
     }
   }
 
@@ -162,13 +165,11 @@ class LoopOrder {
 
   void lay_pocket(const Pocket& pocket) {
     stop_if_asked(context_);
-    std::vector<Point2> points =
-        spiral(forest_, pocket, seam_of(pocket.loops.front()), context_.line_distance_mm());
-    if (inside_out()) std::reverse(points.begin(), points.end());
-    lay(std::move(points));
+    lay_all(spirals(forest_, pocket, seam_of(pocket.loops.front()), context_.line_distance_mm(),
+                    area_));
   }
 
-  /// A pocket and all inside it. Branches are as many as forks, so the recursion is not deep.
+  /// A pocket and all inside it.
   void lay_branch(const PocketForest& pockets, std::uint32_t number) {
     const Pocket& pocket = pockets.pockets[number];
     if (!inside_out()) lay_pocket(pocket);
@@ -193,7 +194,7 @@ class LoopOrder {
 
   const ConcentricParams& params_;
   const LoopForest& forest_;
-  const Polygons& area_;
+  EdgeGrid area_;
   const PlanContext& context_;
   SeamRule seam_;
   Point2 nozzle_;

@@ -15,6 +15,8 @@ namespace {
 constexpr double kHeadStart = 0.4;
 // A foot is sought so many steps ahead of what the inner loop has gone.
 constexpr double kLookAheadSteps = 6;
+// Farther from its foot a point is not beside the loop.
+constexpr double kFarthestSteps = 1.5;
 
 /// Whether a loop goes on as its only child, in the same direction.
 bool goes_on(const LoopForest& forest, const Loop& loop) {
@@ -42,9 +44,12 @@ Foot foot_ahead(const Walk& walk, const Foot& from, double limit_mm, Point2 p) {
 }
 
 /// One turn between two loops: at share t of the inner walk the stroke lies `first` + t (`last` -
-/// `first`) of the way from the outer loop to the inner one.
-void turn(const Walk& outer, const Walk& inner, double first, double last, double step_mm,
-          std::vector<Point2>& stroke) {
+/// `first`) of the way from the outer loop to the inner one. Empty if the inner loop strays from
+/// the outer one.
+std::vector<Point2> turn(const Walk& outer, const Walk& inner, double first, double last,
+                         double step_mm) {
+  std::vector<Point2> stroke;
+  bool strays = false;
   Foot foot{1, outer.points().front()};
   const auto visit = [&](double along_mm, Point2 p) {
     const double t = first + (last - first) * along_mm / inner.length_mm();
@@ -56,6 +61,7 @@ void turn(const Walk& outer, const Walk& inner, double first, double last, doubl
     for (std::size_t i = foot.edge; i < next.edge; ++i)
       go_to(lerp(outer.points()[i], p, t), stroke);
     foot = next;
+    strays |= squared_distance(foot.point, p) > kFarthestSteps * kFarthestSteps * step_mm * step_mm;
     go_to(lerp(foot.point, p, t), stroke);
   };
   for (std::size_t i = 1; i < inner.points().size(); ++i) {
@@ -66,6 +72,14 @@ void turn(const Walk& outer, const Walk& inner, double first, double last, doubl
       visit(inner.along_mm(i - 1) + share * distance(a, b), lerp(a, b, share));
     }
   }
+  if (strays) stroke.clear();
+  return stroke;
+}
+
+bool stays_inside(const EdgeGrid& area, const std::vector<Point2>& line) {
+  for (std::size_t i = 1; i < line.size(); ++i)
+    if (!area.covers(line[i - 1], line[i])) return false;
+  return true;
 }
 
 }  // namespace
@@ -88,25 +102,42 @@ PocketForest pocket_forest(const LoopForest& forest, bool chains) {
   return all;
 }
 
-std::vector<Point2> spiral(const LoopForest& forest, const Pocket& pocket, std::size_t start,
-                           double step_mm) {
-  std::vector<Point2> stroke;
-  const Ring& first = forest.loops[pocket.loops.front()].ring;
-  Walk outer(first, {static_cast<std::uint32_t>(start), first[start]}, true);
-  outer.append(0, outer.length_mm(), stroke);
+std::vector<std::vector<Point2>> spirals(const LoopForest& forest, const Pocket& pocket,
+                                         std::size_t start, double step_mm, const EdgeGrid& area) {
+  std::vector<std::vector<Point2>> strokes(1);
+  const auto ring_of = [&](std::size_t i) -> const Ring& {
+    return forest.loops[pocket.loops[i]].ring;
+  };
+  // A pocket's first and last loop are laid whole.
+  const auto lay_whole = [&](std::size_t i, const RingPlace& from) {
+    const Walk walk(ring_of(i), from, true);
+    walk.append(0, walk.length_mm(), strokes.back());
+  };
+  RingPlace at{static_cast<std::uint32_t>(start), ring_of(0)[start]};
+  lay_whole(0, at);
+  bool is_first = true;
   for (std::size_t i = 1; i < pocket.loops.size(); ++i) {
-    const Ring& ring = forest.loops[pocket.loops[i]].ring;
-    Walk inner(ring, nearest_place(ring, outer.points().front()).place, true);
+    const RingPlace next = nearest_place(ring_of(i), at.point).place;
+    const Walk inner(ring_of(i), next, true);
     // The turn begins beside the inner walk's first point.
-    const NearPlace beside =
-        nearest_place(forest.loops[pocket.loops[i - 1]].ring, inner.points().front());
-    const Walk around(forest.loops[pocket.loops[i - 1]].ring, beside.place, true);
-    turn(around, inner, i == 1 ? kHeadStart : 0, i + 1 == pocket.loops.size() ? 1 - kHeadStart : 1,
-         step_mm, stroke);
-    outer = inner;
+    const Walk outer(ring_of(i - 1), nearest_place(ring_of(i - 1), next.point).place, true);
+    const bool is_last = i + 1 == pocket.loops.size();
+    std::vector<Point2> line =
+        turn(outer, inner, is_first ? kHeadStart : 0, is_last ? 1 - kHeadStart : 1, step_mm);
+    if (!line.empty()) line.insert(line.begin(), strokes.back().back());
+    const bool is_good = !line.empty() && stays_inside(area, line);
+    if (is_good) {
+      for (const Point2 p : line) go_to(p, strokes.back());
+      if (is_last) lay_whole(i, next);
+    } else {
+      if (!is_first) lay_whole(i - 1, at);
+      strokes.emplace_back();
+      lay_whole(i, next);
+    }
+    is_first = !is_good;
+    at = next;
   }
-  if (pocket.loops.size() > 1) outer.append(0, outer.length_mm(), stroke);
-  return stroke;
+  return strokes;
 }
 
 }  // namespace routebench::concentric

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "loops.hpp"
+#include "routebench/geometry/edge_grid.hpp"
 #include "routebench/geometry/types.hpp"
 
 namespace routebench::concentric {
@@ -25,9 +26,11 @@ struct PocketForest {
 [[nodiscard]] PocketForest pocket_forest(const LoopForest& loops, bool chains);
 
 /// One stroke over a pocket, from the vertex `start` of its first loop: once round that loop, then
-/// a spiral from loop to loop, and round the last one. A pocket of one loop is that loop.
+/// a spiral from loop to loop, and round the last one. A pocket of one loop is that loop. Where a
+/// turn between two loops would leave the area or stray from them, a new stroke begins.
 /// Cost   near linear in points.
-[[nodiscard]] std::vector<Point2> spiral(const LoopForest& forest, const Pocket& pocket,
-                                         std::size_t start, double step_mm);
+[[nodiscard]] std::vector<std::vector<Point2>> spirals(const LoopForest& forest,
+                                                       const Pocket& pocket, std::size_t start,
+                                                       double step_mm, const EdgeGrid& area);
 
 }  // namespace routebench::concentric

@@ -33,7 +33,7 @@ std::uint32_t find(std::vector<std::uint32_t>& leader, std::uint32_t i) {
 
 }  // namespace
 
-TreeLinker::TreeLinker(const LoopForest& forest, const Polygons& area, double step_mm,
+TreeLinker::TreeLinker(const LoopForest& forest, const EdgeGrid& area, double step_mm,
                        double gap_mm, const PlanContext& context)
     : forest_(forest),
       area_(area),

@@ -17,7 +17,7 @@ class TreeLinker {
  public:
   /// Takes   the forest and the area that joints must not leave; loops lie step_mm apart, openings
   ///         are gap_mm wide.
-  TreeLinker(const LoopForest& forest, const Polygons& area, double step_mm, double gap_mm,
+  TreeLinker(const LoopForest& forest, const EdgeGrid& area, double step_mm, double gap_mm,
              const PlanContext& context);
 
   /// Strokes over all loops that hang together with `root`, which begins at its vertex `start`. The
@@ -36,7 +36,7 @@ class TreeLinker {
   void bridge_trees();
 
   const LoopForest& forest_;
-  EdgeGrid area_;
+  const EdgeGrid& area_;
   double step_mm_;
   double gap_mm_;
   const PlanContext& context_;
