@@ -166,7 +166,7 @@ class LoopOrder {
   void lay_pocket(const Pocket& pocket) {
     stop_if_asked(context_);
     lay_all(spirals(forest_, pocket, seam_of(pocket.loops.front()), context_.line_distance_mm(),
-                    area_));
+                    context_.density >= 1, area_));
   }
 
   /// A pocket and all inside it.

@@ -103,18 +103,19 @@ PocketForest pocket_forest(const LoopForest& forest, bool chains) {
 }
 
 std::vector<std::vector<Point2>> spirals(const LoopForest& forest, const Pocket& pocket,
-                                         std::size_t start, double step_mm, const EdgeGrid& area) {
+                                         std::size_t start, double step_mm, bool dense,
+                                         const EdgeGrid& area) {
   std::vector<std::vector<Point2>> strokes(1);
   const auto ring_of = [&](std::size_t i) -> const Ring& {
     return forest.loops[pocket.loops[i]].ring;
   };
-  // A pocket's first and last loop are laid whole.
+  // Dense, a pocket's first and last loop are laid whole; sparse, the spiral begins on the first.
   const auto lay_whole = [&](std::size_t i, const RingPlace& from) {
     const Walk walk(ring_of(i), from, true);
     walk.append(0, walk.length_mm(), strokes.back());
   };
   RingPlace at{static_cast<std::uint32_t>(start), ring_of(0)[start]};
-  lay_whole(0, at);
+  if (dense || pocket.loops.size() == 1) lay_whole(0, at);
   bool is_first = true;
   for (std::size_t i = 1; i < pocket.loops.size(); ++i) {
     const RingPlace next = nearest_place(ring_of(i), at.point).place;
@@ -122,17 +123,17 @@ std::vector<std::vector<Point2>> spirals(const LoopForest& forest, const Pocket&
     // The turn begins beside the inner walk's first point.
     const Walk outer(ring_of(i - 1), nearest_place(ring_of(i - 1), next.point).place, true);
     const bool is_last = i + 1 == pocket.loops.size();
-    std::vector<Point2> line =
-        turn(outer, inner, is_first ? kHeadStart : 0, is_last ? 1 - kHeadStart : 1, step_mm);
-    if (!line.empty()) line.insert(line.begin(), strokes.back().back());
+    std::vector<Point2> line = turn(outer, inner, is_first && dense ? kHeadStart : 0,
+                                    is_last && dense ? 1 - kHeadStart : 1, step_mm);
+    if (!line.empty() && !strokes.back().empty()) line.insert(line.begin(), strokes.back().back());
     const bool is_good = !line.empty() && stays_inside(area, line);
     if (is_good) {
       for (const Point2 p : line) go_to(p, strokes.back());
       if (is_last) lay_whole(i, next);
     } else {
-      if (!is_first) lay_whole(i - 1, at);
+      if (!is_first || strokes.back().empty()) lay_whole(i - 1, at);
       strokes.emplace_back();
-      lay_whole(i, next);
+      if (dense || is_last) lay_whole(i, next);
     }
     is_first = !is_good;
     at = next;

@@ -25,12 +25,13 @@ struct PocketForest {
 /// The forest with unforked chains drawn together, or with a pocket for every loop.
 [[nodiscard]] PocketForest pocket_forest(const LoopForest& loops, bool chains);
 
-/// One stroke over a pocket, from the vertex `start` of its first loop: once round that loop, then
-/// a spiral from loop to loop, and round the last one. A pocket of one loop is that loop. Where a
-/// turn between two loops would leave the area or stray from them, a new stroke begins.
-/// Cost   near linear in points.
+/// One stroke over a pocket, from the vertex `start` of its first loop: once round that loop if
+/// it is dense, then a spiral from loop to loop, and round the last one. A pocket of one loop is
+/// that loop. Where a turn between two loops would leave the area or stray from them, a new stroke
+/// begins. Cost   near linear in points.
 [[nodiscard]] std::vector<std::vector<Point2>> spirals(const LoopForest& forest,
                                                        const Pocket& pocket, std::size_t start,
-                                                       double step_mm, const EdgeGrid& area);
+                                                       double step_mm, bool dense,
+                                                       const EdgeGrid& area);
 
 }  // namespace routebench::concentric

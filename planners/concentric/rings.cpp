@@ -12,8 +12,12 @@ namespace {
 // What beads leave is sought with beads so much wider: outlines that all but coincide are slow to
 // subtract, and what lies between them is noise.
 constexpr double kMarginMm = 0.03;
-// Shorter centre lines, in widths of a line, are not worth a travel.
-constexpr double kShortestLine = 2;
+// Shorter lines in gaps, in widths of a line, are not worth a travel; in slivers, where there is
+// nothing else, they are.
+constexpr double kShortestInGap = 2;
+constexpr double kShortestInSliver = 0.5;
+// Compact places so wide get a dot.
+constexpr double kSmallestDot = 0.5;
 
 void append(std::vector<Stroke> more, std::vector<Stroke>& strokes) {
   std::move(more.begin(), more.end(), std::back_inserter(strokes));
@@ -23,7 +27,8 @@ CentreLineRule rule_for(double max_width_mm, const RingRule& rule, const PlanCon
   CentreLineRule lines;
   lines.min_width_mm = rule.min_gap_mm;
   lines.max_width_mm = max_width_mm;
-  lines.min_length_mm = kShortestLine * context.line_width_mm;
+  lines.min_length_mm = kShortestInGap * context.line_width_mm;
+  lines.min_dot_mm = kSmallestDot * context.line_width_mm;
   return lines;
 }
 
@@ -40,6 +45,7 @@ void lay_slivers(const Polygons& bare, const RingRule& rule, const PlanContext& 
                  Rings& rings) {
   CentreLineRule lines = rule_for(context.line_width_mm + context.spacing_mm, rule, context);
   lines.width = CentreLineWidth::kInscribed;
+  lines.min_length_mm = kShortestInSliver * context.line_width_mm;
   append(centre_lines(bare, lines, context), rings.centre_lines);
 }
 
@@ -50,7 +56,7 @@ Rings dense_rings(const Polygons& polygons, const RingRule& rule, const PlanCont
       insets(polygons, context.line_width_mm / 2, half_mm, rule.method, context);
   Rings rings;
   if (all.empty()) lay_slivers(polygons, rule, context, rings);
-  for (std::size_t i = 0; i < all.size(); i += 2) {
+  for (std::size_t i = 0; !all.empty() && i <= all.size(); i += 2) {
     stop_if_asked(context);
     // Parts of a loop that have nothing half a spacing inside are laid as one line.
     const Polygons inside = i + 1 < all.size() ? all[i + 1] : Polygons{};
