@@ -17,7 +17,8 @@ constexpr double kMarginMm = 0.03;
 constexpr double kShortestInGap = 2;
 constexpr double kShortestInSliver = 0.5;
 // Compact places so wide get a dot.
-constexpr double kSmallestDot = 0.5;
+constexpr double kDotInGap = 0.8;
+constexpr double kDotInSliver = 0.5;
 
 void append(std::vector<Stroke> more, std::vector<Stroke>& strokes) {
   std::move(more.begin(), more.end(), std::back_inserter(strokes));
@@ -28,7 +29,7 @@ CentreLineRule rule_for(double max_width_mm, const RingRule& rule, const PlanCon
   lines.min_width_mm = rule.min_gap_mm;
   lines.max_width_mm = max_width_mm;
   lines.min_length_mm = kShortestInGap * context.line_width_mm;
-  lines.min_dot_mm = kSmallestDot * context.line_width_mm;
+  lines.min_dot_mm = kDotInGap * context.line_width_mm;
   return lines;
 }
 
@@ -46,6 +47,7 @@ void lay_slivers(const Polygons& bare, const RingRule& rule, const PlanContext& 
   CentreLineRule lines = rule_for(context.line_width_mm + context.spacing_mm, rule, context);
   lines.width = CentreLineWidth::kInscribed;
   lines.min_length_mm = kShortestInSliver * context.line_width_mm;
+  lines.min_dot_mm = kDotInSliver * context.line_width_mm;
   append(centre_lines(bare, lines, context), rings.centre_lines);
 }
 
@@ -74,26 +76,55 @@ Rings dense_rings(const Polygons& polygons, const RingRule& rule, const PlanCont
   return rings;
 }
 
-/// Sparse: loops, and lines where their sides would lie on each other.
+/// Joins strokes of one width that follow each other.
+std::vector<Stroke> joined(std::vector<Stroke> strokes) {
+  std::vector<Stroke> all;
+  for (Stroke& stroke : strokes) {
+    if (!all.empty() && all.back().width_mm == stroke.width_mm &&
+        all.back().points.back() == stroke.points.front())
+      all.back().points.insert(all.back().points.end(), stroke.points.begin() + 1,
+                               stroke.points.end());
+    else
+      all.push_back(std::move(stroke));
+  }
+  return all;
+}
+
+/// Lines in the middle of parts up to widest_mm wide, no wider than a line.
+void lay_middles(const Polygons& parts, double widest_mm, double shortest_mm, const RingRule& rule,
+                 const PlanContext& context, Rings& rings) {
+  CentreLineRule lines = rule_for(widest_mm, rule, context);
+  lines.width = CentreLineWidth::kInscribed;
+  lines.min_length_mm = shortest_mm;
+  std::vector<Stroke> strokes = centre_lines(parts, lines, context);
+  for (Stroke& stroke : strokes) stroke.width_mm = std::min(stroke.width_mm, context.line_width_mm);
+  append(joined(std::move(strokes)), rings.centre_lines);
+}
+
+/// Sparse: loops where the place between two walls or loops is at least so many line distances
+/// wide, else one line. That is as much as is demanded or a third off.
+constexpr double kLoopFromDistances = 1.5;
+
 Rings sparse_rings(const Polygons& polygons, const RingRule& rule, const PlanContext& context) {
-  std::vector<Polygons> all =
-      insets(polygons, context.line_width_mm / 2, context.line_distance_mm(), rule.method, context);
+  const double apart_mm = context.line_distance_mm(), width_mm = context.line_width_mm;
+  const std::vector<Polygons> all = insets(polygons, width_mm / 2, apart_mm, rule.method, context);
   Rings rings;
   if (all.empty()) lay_slivers(polygons, rule, context, rings);
-  const double half_mm = context.line_width_mm / 2;
   for (std::size_t i = 0; i < all.size(); ++i) {
     stop_if_asked(context);
-    // Parts of a loop that have nothing half a spacing inside are laid as one line.
-    const Polygons inside = offset(all[i], -context.spacing_mm / 2);
-    const Polygons lost = bare_part(all[i], inside, context.spacing_mm / 2);
-    Polygons loops =
-        lost.empty() ? all[i] : intersect(offset(inside, context.spacing_mm / 2), all[i]);
+    // The sides of a loop are nearer to each other than the place between its neighbours is wide.
+    const double room_mm = i == 0 ? width_mm : apart_mm;
+    const double reach_mm =
+        std::max(context.spacing_mm, kLoopFromDistances * apart_mm - room_mm) / 2;
+    const Polygons inside = offset(all[i], -reach_mm);
+    const Polygons lost = bare_part(all[i], inside, reach_mm);
+    Polygons loops = lost.empty() ? all[i] : intersect(offset(inside, reach_mm), all[i]);
     if (i == 0)
-      lay_slivers(bare_part(polygons, loops, half_mm), rule, context, rings);
+      lay_middles(bare_part(polygons, loops, width_mm / 2), 2 * reach_mm + width_mm,
+                  kShortestInSliver * width_mm, rule, context, rings);
     else
-      append(centre_lines(offset(lost, half_mm), rule_for(context.line_width_mm, rule, context),
-                          context),
-             rings.centre_lines);
+      lay_middles(offset(lost, width_mm / 2), 2 * reach_mm + width_mm, apart_mm, rule, context,
+                  rings);
     if (!loops.empty()) rings.insets.push_back(std::move(loops));
   }
   return rings;
