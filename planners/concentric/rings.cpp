@@ -91,11 +91,13 @@ std::vector<Stroke> joined(std::vector<Stroke> strokes) {
 }
 
 /// Lines in the middle of parts up to widest_mm wide, no wider than a line.
-void lay_middles(const Polygons& parts, double widest_mm, double shortest_mm, const RingRule& rule,
+void lay_middles(const Polygons& parts, double widest_mm, bool dots, const RingRule& rule,
                  const PlanContext& context, Rings& rings) {
   CentreLineRule lines = rule_for(widest_mm, rule, context);
   lines.width = CentreLineWidth::kInscribed;
-  lines.min_length_mm = shortest_mm;
+  lines.min_length_mm = context.line_distance_mm();
+  // Elsewhere they are but the corners of loops.
+  if (!dots) lines.min_dot_mm = widest_mm + context.line_distance_mm();
   std::vector<Stroke> strokes = centre_lines(parts, lines, context);
   for (Stroke& stroke : strokes) stroke.width_mm = std::min(stroke.width_mm, context.line_width_mm);
   append(joined(std::move(strokes)), rings.centre_lines);
@@ -119,12 +121,9 @@ Rings sparse_rings(const Polygons& polygons, const RingRule& rule, const PlanCon
     const Polygons inside = offset(all[i], -reach_mm);
     const Polygons lost = bare_part(all[i], inside, reach_mm);
     Polygons loops = lost.empty() ? all[i] : intersect(offset(inside, reach_mm), all[i]);
-    if (i == 0)
-      lay_middles(bare_part(polygons, loops, width_mm / 2), 2 * reach_mm + width_mm,
-                  kShortestInSliver * width_mm, rule, context, rings);
-    else
-      lay_middles(offset(lost, width_mm / 2), 2 * reach_mm + width_mm, apart_mm, rule, context,
-                  rings);
+    if (i == 0) lay_slivers(bare_part(polygons, all[i], width_mm / 2), rule, context, rings);
+    lay_middles(offset(lost, width_mm / 2), 2 * reach_mm + width_mm, i == 0 && loops.empty(), rule,
+                context, rings);
     if (!loops.empty()) rings.insets.push_back(std::move(loops));
   }
   return rings;
