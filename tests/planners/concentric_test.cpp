@@ -99,7 +99,7 @@ TEST(Concentric, ClipperAndSkeletonAgree) {
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {
     // A skeleton mitres without end corners that point inwards, so they are rounded.
     const Polygons polygons =
-        offset(offset(test::random_polygons(seed, 3), -0.6, Join::kRound), 0.6, Join::kRound);
+        offset(offset(test::random_polygons(seed, 3), 0.6, Join::kRound), -0.6, Join::kRound);
     const Polygons a = bands_of(plan(polygons, 0.3, kLoops));
     const Polygons b = bands_of(plan(polygons, 0.3, skeleton));
     ASSERT_FALSE(a.empty());
