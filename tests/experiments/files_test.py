@@ -66,7 +66,7 @@ class FilesTest(PlotTestCase):
                 )
                 for ending in ("png", "svg")
             ]
-            + ["table.md", "table.tex"],
+            + ["summary.md", "table.md", "table.tex"],
         )
         for name in names:
             self.assertGreater((place / name).stat().st_size, 0, name)

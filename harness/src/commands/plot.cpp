@@ -28,6 +28,7 @@ struct PlotOptions {
   std::string out;
   std::string formats = "png,svg";
   std::string metrics;
+  std::string baseline;
 };
 
 /// The package of an installed program, or else of the source tree that this one was built from.
@@ -54,6 +55,7 @@ std::vector<std::string> python_arguments(const PlotOptions& options) {
   add("--out", options.out);
   add("--formats", options.formats);
   add("--metrics", options.metrics);
+  add("--baseline", options.baseline);
   arguments.insert(arguments.end(), {"--", options.results});
   return arguments;
 }
@@ -128,6 +130,9 @@ void add_plot_command(CLI::App& app, int& exit_code) {
   command->add_option("--metrics", options->metrics,
                       "metrics that get bars and table columns, with commas between them, or all "
                       "[those of interest]");
+  command->add_option("--baseline", options->baseline,
+                      "contender that the summary compares the others with [the one valid on most "
+                      "models]");
   command->callback([options, &exit_code] { exit_code = run_program(python_arguments(*options)); });
 }
 
