@@ -114,8 +114,11 @@ class Rectilinear final : public Planner {
   using Params = RectilinearParams;
 
   static PlannerInfo info() {
-    return {"rectilinear", PlannerRole::kFill, "parallel lines, joined along the wall or straight",
-            "K. De Keyser, 2016"};
+    return {"rectilinear",
+            PlannerRole::kFill,
+            "parallel lines, joined along the wall or straight",
+            "K. De Keyser, 2016",
+            {{"published", "simple_slicer"}}};
   }
 
   explicit Rectilinear(const Params& params) : params_(params) {}
