@@ -9,7 +9,6 @@
 
 #include "routebench/geometry/region.hpp"
 #include "routebench/geometry/vec.hpp"
-#include "routebench/planning/centre_lines.hpp"
 #include "routebench/planning/frame.hpp"
 #include "routebench/planning/nearest_grid.hpp"
 #include "routebench/planning/ordering.hpp"
@@ -26,9 +25,6 @@ enum class Seam { kNearest, kFixedPoint, kMinX };
 enum class Order { kInsideOut, kOutsideIn, kAny };
 enum class Thin { kDrop, kDouble };
 enum class Gaps { kFill, kLeave };
-
-// Narrower gaps, in line widths, are left to what their neighbours' beads spread.
-constexpr double kNarrowest = 1.0 / 3;
 
 struct ShellParams {
   SearchKind search = SearchKind::kGrid;
@@ -369,13 +365,8 @@ class GreedyShell final : public Planner {
       if (pool.size() > 0) island.pools.push_back(std::move(pool));
     }
     if (params_.order == Order::kInsideOut) std::reverse(island.pools.begin(), island.pools.end());
-    if (params_.gaps == Gaps::kFill && context.perimeters > 0)
-      island.gaps = centre_lines(wall_gaps(polygon, regions, context),
-                                 {.min_width_mm = kNarrowest * context.line_width_mm,
-                                  .max_width_mm = context.line_width_mm,
-                                  .min_length_mm = context.line_width_mm,
-                                  .width = CentreLineWidth::kInscribed},
-                                 context);
+    if (params_.gaps == Gaps::kFill)
+      island.gaps = gap_lines({polygon}, regions, context.perimeters, context);
     return island;
   }
 

@@ -7,6 +7,7 @@
 
 #include "routebench/geometry/region.hpp"
 #include "routebench/geometry/vec.hpp"
+#include "routebench/planning/centre_lines.hpp"
 
 namespace routebench {
 namespace {
@@ -49,7 +50,7 @@ std::vector<Polygons> wall_regions(const Polygon& island, const PlanContext& con
   return regions;
 }
 
-Polygons wall_gaps(const Polygon& island, const std::vector<Polygons>& regions,
+Polygons wall_gaps(const Polygons& polygons, const std::vector<Polygons>& regions, int count,
                    const PlanContext& context) {
   // A stroke three times as long as wide, at a third of the width of a line.
   const double least_mm2 = context.line_width_mm * context.line_width_mm / 3;
@@ -64,10 +65,9 @@ Polygons wall_gaps(const Polygon& island, const std::vector<Polygons>& regions,
   const auto reach_of = [&](std::size_t wall) {
     return (wall == 0 ? context.line_width_mm : context.spacing_mm) / 2;
   };
-  for (std::size_t wall = 0; wall <= regions.size() && std::cmp_less(wall, context.perimeters);
-       ++wall) {
+  for (std::size_t wall = 0; wall <= regions.size() && std::cmp_less(wall, count); ++wall) {
     stop_if_asked(context);
-    const Polygons before = wall == 0 ? Polygons{island} : regions[wall - 1];
+    const Polygons& before = wall == 0 ? polygons : regions[wall - 1];
     const Polygons none;
     const Polygons& region = wall < regions.size() ? regions[wall] : none;
     // Where nothing is narrow, the wall's place grows back to where it came from.
@@ -78,6 +78,17 @@ Polygons wall_gaps(const Polygon& island, const std::vector<Polygons>& regions,
   }
   if (gap_mm2 < least_mm2) return {};
   return polygons_from_rings(std::move(rings), FillRule::kEvenOdd);
+}
+
+std::vector<Stroke> gap_lines(const Polygons& polygons, const std::vector<Polygons>& regions,
+                              int count, const PlanContext& context) {
+  const double narrowest_mm = context.line_width_mm / 3;  // less is left to what beads spread
+  return centre_lines(wall_gaps(polygons, regions, count, context),
+                      {.min_width_mm = narrowest_mm,
+                       .max_width_mm = context.line_width_mm,
+                       .min_length_mm = context.line_width_mm,
+                       .width = CentreLineWidth::kInscribed},
+                      context);
 }
 
 std::vector<Ring> rings_of(const Polygons& polygons) {

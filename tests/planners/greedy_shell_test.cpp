@@ -247,7 +247,7 @@ TEST(WallGaps, AreWhatNoWallReaches) {
       const PlanContext context = context_for(3);
       const std::vector<Polygons> regions = wall_regions(polygon, context);
       // Offsets are true to 5 um.
-      const Polygons gaps = without_thin_parts(wall_gaps(polygon, regions, context), 0.02);
+      const Polygons gaps = without_thin_parts(wall_gaps({polygon}, regions, 3, context), 0.02);
       const double slivers_mm2 = 0.001 * perimeter_mm({polygon});
       EXPECT_LE(area_mm2(subtract(gaps, {polygon})), slivers_mm2);
       for (std::size_t wall = 0; wall < regions.size(); ++wall) {
@@ -257,10 +257,8 @@ TEST(WallGaps, AreWhatNoWallReaches) {
         EXPECT_LE(area_mm2(intersect(gaps, band)), slivers_mm2);
       }
     }
-  EXPECT_TRUE(wall_gaps({test::rectangle(0, 0, 10, 10), {}},
-                        wall_regions({test::rectangle(0, 0, 10, 10), {}}, context_for(3)),
-                        context_for(3))
-                  .empty());
+  const Polygon square{test::rectangle(0, 0, 10, 10), {}};
+  EXPECT_TRUE(wall_gaps({square}, wall_regions(square, context_for(3)), 3, context_for(3)).empty());
 }
 
 }  // namespace
