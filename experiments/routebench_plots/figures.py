@@ -234,7 +234,7 @@ def _model_figures(
             f"layers-{slug}{suffix}",
             partial(curves.draw, results, setting, model, metrics, title),
         )
-    for index, z_mm in results.kept_layers(model):
+    for index, z_mm in results.kept_layers(setting, model):
         title = _titled(
             f"Layer {index} of {model.label}, z = {z_mm:.6g} mm", setting
         )
