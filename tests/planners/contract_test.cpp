@@ -87,7 +87,10 @@ struct Faithful {
   ParamValue value;
 };
 const std::vector<Faithful>& faithful() {
-  static const std::vector<Faithful> all{};
+  static const std::vector<Faithful> all{
+      {"voxel", "rim", std::string("published")},
+      {"voxel", "variant", std::string("published")},
+  };
   return all;
 }
 
