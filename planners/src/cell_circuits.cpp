@@ -33,10 +33,10 @@ class Builder {
   }
 
   std::vector<std::vector<std::uint32_t>> build() {
-    begin_blocks(2);
+    begin_blocks(fullest_raster(), 2);
     merge();
-    // Blocks that lie between those of the first raster.
-    begin_blocks(1);
+    // Blocks that lie between those of the raster.
+    begin_blocks({0, 0}, 1);
     merge();
     take_pairs();
     take_single_cells();
@@ -94,21 +94,48 @@ class Builder {
     return to;
   }
 
-  void begin_blocks(std::uint32_t step) {
-    for (std::uint32_t row = 0; row + 1 < grid_.rows; row += step)
-      for (std::uint32_t column = 0; column + 1 < grid_.columns; column += step) {
-        const std::uint32_t a = grid_.cell(column, row);
-        if (!free_[a]) continue;
-        const auto b = free_neighbour(a, kEast);
-        const auto c = free_neighbour(a, kNorth);
-        if (!b || !c) continue;
-        const auto d = free_neighbour(*b, kNorth);
-        if (!d || !open(*c, *d, kEast)) continue;
-        toggle(a, *b, kEast);
-        toggle(*b, *d, kNorth);
-        toggle(*c, *d, kEast);
-        toggle(a, *c, kNorth);
-        for (const std::uint32_t cell : {a, *b, *c, *d}) {
+  /// Where a block of two by two cells begins.
+  struct Corner {
+    std::uint32_t column;
+    std::uint32_t row;
+  };
+
+  /// The four cells of a block, anticlockwise, if all are free and lie open to each other.
+  [[nodiscard]] std::optional<std::array<std::uint32_t, 4>> free_block(std::uint32_t column,
+                                                                       std::uint32_t row) const {
+    const std::uint32_t a = grid_.cell(column, row);
+    if (!free_[a]) return std::nullopt;
+    const auto b = free_neighbour(a, kEast);
+    const auto d = free_neighbour(a, kNorth);
+    if (!b || !d) return std::nullopt;
+    const auto c = free_neighbour(*b, kNorth);
+    if (!c || !open(*d, *c, kEast)) return std::nullopt;
+    return {{a, *b, *c, *d}};
+  }
+
+  /// The corner of the raster, of the four that there are, with the most free blocks.
+  [[nodiscard]] Corner fullest_raster() const {
+    std::array<std::array<std::size_t, 2>, 2> blocks{};
+    for (std::uint32_t row = 0; row < grid_.rows; ++row)
+      for (std::uint32_t column = 0; column < grid_.columns; ++column)
+        if (free_block(column, row)) ++blocks[row % 2][column % 2];
+    Corner best{0, 0};
+    for (const Corner corner : {Corner{1, 0}, Corner{0, 1}, Corner{1, 1}})
+      if (blocks[corner.row][corner.column] > blocks[best.row][best.column]) best = corner;
+    return best;
+  }
+
+  void begin_blocks(Corner raster, std::uint32_t step) {
+    for (std::uint32_t row = raster.row; row < grid_.rows; row += step)
+      for (std::uint32_t column = raster.column; column < grid_.columns; column += step) {
+        const auto block = free_block(column, row);
+        if (!block) continue;
+        const auto [a, b, c, d] = *block;
+        toggle(a, b, kEast);
+        toggle(b, c, kNorth);
+        toggle(d, c, kEast);
+        toggle(a, d, kNorth);
+        for (const std::uint32_t cell : *block) {
           free_[cell] = false;
           unite(cell, a);
         }
