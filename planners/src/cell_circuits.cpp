@@ -1,9 +1,9 @@
 #include "routebench/planning/cell_circuits.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <numeric>
-#include <optional>
 
 namespace routebench {
 namespace {
@@ -25,6 +25,7 @@ class Builder {
   Builder(const CellMap& map, std::vector<bool>& free, const DiagonalIsClear& clear)
       : map_(map),
         grid_(map.grid),
+        columns_(map.grid.columns),
         free_(free),
         clear_(clear),
         links_(grid_.size(), 0),
@@ -45,26 +46,22 @@ class Builder {
   }
 
  private:
-  [[nodiscard]] std::optional<std::uint32_t> neighbour(std::uint32_t cell, std::size_t move) const {
-    const std::int64_t column = grid_.column(cell) + kMoves[move].dx;
-    const std::int64_t row = grid_.row(cell) + kMoves[move].dy;
-    if (column < 0 || row < 0 || column >= grid_.columns || row >= grid_.rows) return std::nullopt;
-    return grid_.cell(static_cast<std::uint32_t>(column), static_cast<std::uint32_t>(row));
+  /// The cell beyond a move that does not leave the grid.
+  [[nodiscard]] std::uint32_t beyond(std::uint32_t cell, std::size_t move) const {
+    return static_cast<std::uint32_t>(cell + kMoves[move].dx + kMoves[move].dy * columns_);
   }
 
-  /// Whether one may go from a cell to its neighbour, which there is.
-  [[nodiscard]] bool open(std::uint32_t from, std::uint32_t to, std::size_t move) const {
+  /// Whether one may go along a row or column. Never from the grid: its last cells have no link.
+  [[nodiscard]] bool open(std::uint32_t cell, std::size_t move) const {
     switch (move) {
       case kEast:
-        return (map_.flags[from] & kEastLink) != 0;
+        return (map_.flags[cell] & kEastLink) != 0;
       case kNorth:
-        return (map_.flags[from] & kNorthLink) != 0;
+        return (map_.flags[cell] & kNorthLink) != 0;
       case opposite(kEast):
-        return (map_.flags[to] & kEastLink) != 0;
-      case opposite(kNorth):
-        return (map_.flags[to] & kNorthLink) != 0;
+        return cell > 0 && (map_.flags[cell - 1] & kEastLink) != 0;
       default:
-        return clear_(from, to);
+        return cell >= grid_.columns && (map_.flags[cell - grid_.columns] & kNorthLink) != 0;
     }
   }
 
@@ -86,12 +83,8 @@ class Builder {
   }
   void unite(std::uint32_t a, std::uint32_t b) { parent_[circuit(a)] = circuit(b); }
 
-  /// The cell beyond `move` if it is free and may be gone to.
-  [[nodiscard]] std::optional<std::uint32_t> free_neighbour(std::uint32_t cell,
-                                                            std::size_t move) const {
-    const auto to = neighbour(cell, move);
-    if (!to || !free_[*to] || !open(cell, *to, move)) return std::nullopt;
-    return to;
+  [[nodiscard]] bool may_take(std::uint32_t cell, std::size_t move) const {
+    return open(cell, move) && free_[beyond(cell, move)];
   }
 
   /// Where a block of two by two cells begins.
@@ -100,17 +93,10 @@ class Builder {
     std::uint32_t row;
   };
 
-  /// The four cells of a block, anticlockwise, if all are free and lie open to each other.
-  [[nodiscard]] std::optional<std::array<std::uint32_t, 4>> free_block(std::uint32_t column,
-                                                                       std::uint32_t row) const {
-    const std::uint32_t a = grid_.cell(column, row);
-    if (!free_[a]) return std::nullopt;
-    const auto b = free_neighbour(a, kEast);
-    const auto d = free_neighbour(a, kNorth);
-    if (!b || !d) return std::nullopt;
-    const auto c = free_neighbour(*b, kNorth);
-    if (!c || !open(*d, *c, kEast)) return std::nullopt;
-    return {{a, *b, *c, *d}};
+  /// Whether a block of four free cells that lie open to each other begins in a cell.
+  [[nodiscard]] bool is_free_block(std::uint32_t cell) const {
+    return free_[cell] && may_take(cell, kEast) && may_take(cell, kNorth) &&
+           may_take(beyond(cell, kEast), kNorth) && open(beyond(cell, kNorth), kEast);
   }
 
   /// The corner of the raster, of the four that there are, with the most free blocks.
@@ -118,7 +104,7 @@ class Builder {
     std::array<std::array<std::size_t, 2>, 2> blocks{};
     for (std::uint32_t row = 0; row < grid_.rows; ++row)
       for (std::uint32_t column = 0; column < grid_.columns; ++column)
-        if (free_block(column, row)) ++blocks[row % 2][column % 2];
+        if (is_free_block(grid_.cell(column, row))) ++blocks[row % 2][column % 2];
     Corner best{0, 0};
     for (const Corner corner : {Corner{1, 0}, Corner{0, 1}, Corner{1, 1}})
       if (blocks[corner.row][corner.column] > blocks[best.row][best.column]) best = corner;
@@ -128,14 +114,14 @@ class Builder {
   void begin_blocks(Corner raster, std::uint32_t step) {
     for (std::uint32_t row = raster.row; row < grid_.rows; row += step)
       for (std::uint32_t column = raster.column; column < grid_.columns; column += step) {
-        const auto block = free_block(column, row);
-        if (!block) continue;
-        const auto [a, b, c, d] = *block;
+        const std::uint32_t a = grid_.cell(column, row);
+        if (!is_free_block(a)) continue;
+        const std::uint32_t b = beyond(a, kEast), c = beyond(b, kNorth), d = beyond(a, kNorth);
         toggle(a, b, kEast);
         toggle(b, c, kNorth);
         toggle(d, c, kEast);
         toggle(a, d, kNorth);
-        for (const std::uint32_t cell : *block) {
+        for (const std::uint32_t cell : {a, b, c, d}) {
           free_[cell] = false;
           unite(cell, a);
         }
@@ -151,16 +137,15 @@ class Builder {
   /// Exchanges two links along `move`, one on either side of a step across, for two such steps.
   void merge_across(std::size_t across, std::size_t move) {
     for (std::uint32_t a = 0; a < grid_.size(); ++a) {
-      if (!linked(a, move)) continue;
-      const auto c = neighbour(a, across);
-      if (!c || !linked(*c, move) || circuit(a) == circuit(*c)) continue;
-      const std::uint32_t b = *neighbour(a, move), d = *neighbour(*c, move);
-      if (!open(a, *c, across) || !open(b, d, across)) continue;
+      if (!linked(a, move) || !open(a, across)) continue;
+      const std::uint32_t b = beyond(a, move), c = beyond(a, across);
+      if (!linked(c, move) || !open(b, across) || circuit(a) == circuit(c)) continue;
+      const std::uint32_t d = beyond(c, move);
       toggle(a, b, move);
-      toggle(*c, d, move);
-      toggle(a, *c, across);
+      toggle(c, d, move);
+      toggle(a, c, across);
       toggle(b, d, across);
-      unite(a, *c);
+      unite(a, c);
     }
   }
 
@@ -178,23 +163,23 @@ class Builder {
       const auto [a, move] = to_do.back();
       to_do.pop_back();
       if (!linked(a, move)) continue;
-      const std::uint32_t b = *neighbour(a, move);
+      const std::uint32_t b = beyond(a, move);
       const std::size_t left = (move + 2) % kMoves.size();
       for (const std::size_t side : {left, opposite(left)}) {
-        const auto p = free_neighbour(a, side);
-        const auto q = free_neighbour(b, side);
-        if (!p || !q || !open(*p, *q, move)) continue;
+        if (!may_take(a, side) || !may_take(b, side)) continue;
+        const std::uint32_t p = beyond(a, side), q = beyond(b, side);
+        if (!open(p, move)) continue;
         toggle(a, b, move);
-        toggle(a, *p, side);
-        toggle(*p, *q, move);
-        toggle(b, *q, side);
-        for (const std::uint32_t cell : {*p, *q}) {
+        toggle(a, p, side);
+        toggle(p, q, move);
+        toggle(b, q, side);
+        for (const std::uint32_t cell : {p, q}) {
           free_[cell] = false;
           unite(cell, a);
         }
         to_do.push_back({a, side});
         to_do.push_back({b, side});
-        to_do.push_back({*p, move});
+        to_do.push_back({p, move});
         break;
       }
     }
@@ -208,29 +193,26 @@ class Builder {
 
   bool take(std::uint32_t x) {
     for (std::size_t to_u = 0; to_u < kMoves.size(); to_u += 2) {
-      const auto u = neighbour(x, to_u);
-      if (!u || links_[*u] == 0 || !open(x, *u, to_u)) continue;
-      for (std::size_t turn : {1U, 7U, 2U, 6U}) {
-        const std::size_t to_v = (to_u + turn) % kMoves.size();
-        const auto v = neighbour(x, to_v);
-        if (!v || links_[*v] == 0) continue;
-        const std::size_t from_u = move_between(*u, *v);
-        if (!linked(*u, from_u) || !open(x, *v, to_v)) continue;
-        toggle(*u, *v, from_u);
-        toggle(x, *u, to_u);
-        toggle(x, *v, to_v);
-        unite(x, *u);
+      if (!open(x, to_u)) continue;
+      const std::uint32_t u = beyond(x, to_u);
+      for (std::size_t from_u = 0; from_u < kMoves.size(); ++from_u) {
+        if (!linked(u, from_u)) continue;
+        const Move way{kMoves[to_u].dx + kMoves[from_u].dx, kMoves[to_u].dy + kMoves[from_u].dy};
+        const auto to_v = std::find_if(kMoves.begin(), kMoves.end(), [&](Move move) {
+          return move.dx == way.dx && move.dy == way.dy;
+        });
+        if (to_v == kMoves.end()) continue;
+        const auto move = static_cast<std::size_t>(to_v - kMoves.begin());
+        const std::uint32_t v = beyond(x, move);
+        if (move % 2 == 0 ? !open(x, move) : !clear_(x, v)) continue;
+        toggle(u, v, from_u);
+        toggle(x, u, to_u);
+        toggle(x, v, move);
+        unite(x, u);
         return true;
       }
     }
     return false;
-  }
-
-  /// The move between two cells that touch.
-  [[nodiscard]] std::size_t move_between(std::uint32_t from, std::uint32_t to) const {
-    std::size_t move = 0;
-    while (neighbour(from, move) != to) ++move;
-    return move;
   }
 
   std::vector<std::vector<std::uint32_t>> walk() {
@@ -243,7 +225,7 @@ class Builder {
         cells.push_back(cell);
         std::size_t move = 0;
         while (!linked(cell, move)) ++move;
-        const std::uint32_t next = *neighbour(cell, move);
+        const std::uint32_t next = beyond(cell, move);
         toggle(cell, next, move);
         cell = next;
       }
@@ -253,6 +235,7 @@ class Builder {
 
   const CellMap& map_;
   const CellGrid& grid_;
+  std::int64_t columns_;
   std::vector<bool>& free_;
   const DiagonalIsClear& clear_;
   std::vector<std::uint8_t> links_;    // bits of kMoves

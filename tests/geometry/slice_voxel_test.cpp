@@ -55,16 +55,10 @@ Mesh tetrahedron(std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> place(0, 12);
   Mesh mesh;
-  for (int i = 0; i < 4; ++i) mesh.vertices.push_back({place(random), place(random), place(random)});
+  for (int i = 0; i < 4; ++i)
+    mesh.vertices.push_back({place(random), place(random), place(random)});
   mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
-  const auto edge = [&](std::size_t i) {
-    const Point3 &a = mesh.vertices[0], &b = mesh.vertices[i];
-    return Point3{b.x - a.x, b.y - a.y, b.z - a.z};
-  };
-  const Point3 u = edge(1), v = edge(2), w = edge(3);
-  const double volume = u.x * (v.y * w.z - v.z * w.y) + u.y * (v.z * w.x - v.x * w.z) +
-                        u.z * (v.x * w.y - v.y * w.x);
-  return volume > 0 ? mesh : test::inside_out(mesh);
+  return test::volume_mm3(mesh) > 0 ? mesh : test::inside_out(mesh);
 }
 
 TEST(SliceVoxel, ABoxBetweenCentresIsExactlyItsCells) {
@@ -132,7 +126,8 @@ TEST(SliceVoxel, CellsThatTouchInAnEdgeAreTwoPolygons) {
 TEST(SliceVoxel, HolesAreOpenAndCavitiesAreFilled) {
   // A cavity cannot be reached from outside; a hole can, from above.
   const Mesh cube = box({0, 0, 0}, {10, 10, 10});
-  const Slices cavity = slices_of(together(cube, test::inside_out(box({3, 3, 3}, {7, 7, 7}))), 1, 0.5);
+  const Slices cavity =
+      slices_of(together(cube, test::inside_out(box({3, 3, 3}, {7, 7, 7}))), 1, 0.5);
   for (const Layer& layer : cavity.layers) EXPECT_EQ(area_mm2(layer.polygons), 110.25);
   const Slices ring = slices_of(torus(10, 4, 32, 24), 0.5, 0.5);
   ASSERT_EQ(ring.layers[8].polygons.size(), 1U);
