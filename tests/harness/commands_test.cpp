@@ -121,7 +121,7 @@ TEST_F(SliceCommand, BadUsageIsOneLine) {
 TEST_F(SliceCommand, VoxelsSayWhatTheyNeedAndTakeTheLineWidth) {
   const ProgramRun run =
       call({"slice", "shape:box?size=12", "--method", "voxel", "--task", "line_width_mm=0.5",
-            "--task", "layer_height_mm=0.5", "--json", "-"});
+            "--task", "layer_height_mm=0.4", "--json", "-"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const json document = run.json();
   EXPECT_EQ(document["method"], "voxel");
@@ -138,7 +138,7 @@ TEST_F(SliceCommand, VoxelsSayWhatTheyNeedAndTakeTheLineWidth) {
   EXPECT_NE(run.err.find(" of " + std::to_string(std::lround(cells(0)) + 2) + " x "), run.err.npos)
       << run.err;
   EXPECT_EQ(call({"slice", "shape:box?size=12", "--method", "voxel", "--cell", "0.5", "--task",
-                  "layer_height_mm=0.5", "--json", "-"})
+                  "layer_height_mm=0.4", "--json", "-"})
                 .json()["layers"],
             document["layers"]);
   expect_refused({"slice", "shape:box", "--method", "voxel", "--cell", "0.0001"}, "GiB");
