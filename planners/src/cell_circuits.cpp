@@ -31,6 +31,8 @@ class Builder {
         links_(grid_.size(), 0),
         parent_(grid_.size()) {
     std::iota(parent_.begin(), parent_.end(), 0U);
+    for (std::uint32_t cell = 0; cell < grid_.size(); ++cell)
+      if (free_[cell]) cells_.push_back(cell);
   }
 
   std::vector<std::vector<std::uint32_t>> build() {
@@ -102,9 +104,8 @@ class Builder {
   /// The corner of the raster, of the four that there are, with the most free blocks.
   [[nodiscard]] Corner fullest_raster() const {
     std::array<std::array<std::size_t, 2>, 2> blocks{};
-    for (std::uint32_t row = 0; row < grid_.rows; ++row)
-      for (std::uint32_t column = 0; column < grid_.columns; ++column)
-        if (is_free_block(grid_.cell(column, row))) ++blocks[row % 2][column % 2];
+    for (const std::uint32_t cell : cells_)
+      if (is_free_block(cell)) ++blocks[grid_.row(cell) % 2][grid_.column(cell) % 2];
     Corner best{0, 0};
     for (const Corner corner : {Corner{1, 0}, Corner{0, 1}, Corner{1, 1}})
       if (blocks[corner.row][corner.column] > blocks[best.row][best.column]) best = corner;
@@ -112,20 +113,20 @@ class Builder {
   }
 
   void begin_blocks(Corner raster, std::uint32_t step) {
-    for (std::uint32_t row = raster.row; row < grid_.rows; row += step)
-      for (std::uint32_t column = raster.column; column < grid_.columns; column += step) {
-        const std::uint32_t a = grid_.cell(column, row);
-        if (!is_free_block(a)) continue;
-        const std::uint32_t b = beyond(a, kEast), c = beyond(b, kNorth), d = beyond(a, kNorth);
-        toggle(a, b, kEast);
-        toggle(b, c, kNorth);
-        toggle(d, c, kEast);
-        toggle(a, d, kNorth);
-        for (const std::uint32_t cell : {a, b, c, d}) {
-          free_[cell] = false;
-          unite(cell, a);
-        }
+    for (const std::uint32_t a : cells_) {
+      if (grid_.column(a) % step != raster.column || grid_.row(a) % step != raster.row ||
+          !is_free_block(a))
+        continue;
+      const std::uint32_t b = beyond(a, kEast), c = beyond(b, kNorth), d = beyond(a, kNorth);
+      toggle(a, b, kEast);
+      toggle(b, c, kNorth);
+      toggle(d, c, kEast);
+      toggle(a, d, kNorth);
+      for (const std::uint32_t cell : {a, b, c, d}) {
+        free_[cell] = false;
+        unite(cell, a);
       }
+    }
   }
 
   /// Joins circuits that run side by side: first along rows, which makes long level stretches.
@@ -136,7 +137,7 @@ class Builder {
 
   /// Exchanges two links along `move`, one on either side of a step across, for two such steps.
   void merge_across(std::size_t across, std::size_t move) {
-    for (std::uint32_t a = 0; a < grid_.size(); ++a) {
+    for (const std::uint32_t a : cells_) {
       if (!linked(a, move) || !open(a, across)) continue;
       const std::uint32_t b = beyond(a, move), c = beyond(a, across);
       if (!linked(c, move) || !open(b, across) || circuit(a) == circuit(c)) continue;
@@ -156,7 +157,7 @@ class Builder {
       std::size_t move;
     };
     std::vector<Link> to_do;
-    for (std::uint32_t cell = 0; cell < grid_.size(); ++cell)
+    for (const std::uint32_t cell : cells_)
       for (const std::size_t move : {kEast, kNorth})
         if (linked(cell, move)) to_do.push_back({cell, move});
     while (!to_do.empty()) {
@@ -187,7 +188,7 @@ class Builder {
 
   /// Leads links over one free cell that touches both of their ends.
   void take_single_cells() {
-    for (std::uint32_t cell = 0; cell < grid_.size(); ++cell)
+    for (const std::uint32_t cell : cells_)
       if (free_[cell] && take(cell)) free_[cell] = false;
   }
 
@@ -217,7 +218,7 @@ class Builder {
 
   std::vector<std::vector<std::uint32_t>> walk() {
     std::vector<std::vector<std::uint32_t>> circuits;
-    for (std::uint32_t first = 0; first < grid_.size(); ++first) {
+    for (const std::uint32_t first : cells_) {
       if (links_[first] == 0) continue;
       std::vector<std::uint32_t>& cells = circuits.emplace_back();
       // Links are taken away behind the walk; the last one leads back to the first cell.
@@ -238,6 +239,7 @@ class Builder {
   std::int64_t columns_;
   std::vector<bool>& free_;
   const DiagonalIsClear& clear_;
+  std::vector<std::uint32_t> cells_;   // that were free at first
   std::vector<std::uint8_t> links_;    // bits of kMoves
   std::vector<std::uint32_t> parent_;  // of a cell towards the one that names its circuit
 };
