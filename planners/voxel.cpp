@@ -53,8 +53,11 @@ class Voxel final : public Planner {
   using Params = VoxelParams;
 
   static PlannerInfo info() {
-    return {"voxel", PlannerRole::kFill,
-            "cells of a grid: the outline's as walls, the inner in rows", "K. De Keyser, 2016"};
+    return {"voxel",
+            PlannerRole::kFill,
+            "cells of a grid: the outline's as walls, the inner in rows",
+            "K. De Keyser, 2016",
+            {{"rim", "published"}, {"variant", "published"}}};
   }
 
   explicit Voxel(const Params& params) : params_(params) {
