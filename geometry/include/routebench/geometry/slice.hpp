@@ -23,7 +23,7 @@ enum class SliceMethod {
   kNaive,   ///< every triangle against every plane: O(Q N)
   kVoxel,   ///< the surface is drawn into a container of cells and the outside flooded; layers are
             ///< outlines of cells. Cells with surface in them count as material, so layers are too
-            ///< large by half a cell on average, and at most one; enclosed cavities are filled
+            ///< large by about half a cell all round; enclosed cavities are filled
 };
 
 /// Throws Error{kBadUsage} for an unknown name.
