@@ -11,6 +11,7 @@
 #include "routebench/planning/hatch.hpp"
 #include "routebench/planning/ordering.hpp"
 #include "routebench/planning/plugin.hpp"
+#include "routebench/planning/walls.hpp"
 
 namespace {
 
@@ -19,6 +20,7 @@ using namespace routebench;
 enum class Link { kNone, kFlows, kBoundary };
 enum class Ends { kInset, kAlong };
 enum class Sequence { kNearest, kZigzag };
+enum class Thin { kFill, kDrop };
 enum class Published { kNone, kDeKeyser, kSimpleSlicer };
 
 // Offsets wave by up to this where their outline is level (see region.hpp).
@@ -40,6 +42,7 @@ struct RectilinearParams {
   double max_link = 3;
   double min_length_mm = 0.02;
   bool trace = true;
+  Thin thin = Thin::kFill;
   Sequence order = Sequence::kNearest;
 
   void bind(ParamBinder& bind) {
@@ -69,6 +72,9 @@ struct RectilinearParams {
     bind("max_link", max_link, {0, 100}, "line distances", "longest joint along the wall");
     bind("min_length_mm", min_length_mm, {0, 100}, "mm", "shorter lines are left out");
     bind("trace", trace, "at density 1: lay the stretches along the wall that no line comes near");
+    bind("thin", thin, {{"fill", Thin::kFill}, {"drop", Thin::kDrop}},
+         "at density 1, parts narrower than a line: one of their own width along the middle, or "
+         "nothing");
     bind("order", order, {{"nearest", Sequence::kNearest}, {"zigzag", Sequence::kZigzag}},
          "of the strokes: always the nearest, or line by line, every other one reversed");
   }
@@ -90,6 +96,7 @@ Rules rules_of(const RectilinearParams& given, const Layer& layer, const PlanCon
   params.angle_deg = 0;
   params.fit = false;
   params.trace = false;
+  params.thin = Thin::kDrop;
   params.ends = Ends::kAlong;
   params.order = Sequence::kZigzag;
   if (given.published == Published::kDeKeyser) {
@@ -114,8 +121,11 @@ class Rectilinear final : public Planner {
   using Params = RectilinearParams;
 
   static PlannerInfo info() {
-    return {"rectilinear", PlannerRole::kFill, "parallel lines, joined along the wall or straight",
-            "K. De Keyser, 2016"};
+    return {"rectilinear",
+            PlannerRole::kFill,
+            "parallel lines, joined along the wall or straight",
+            "K. De Keyser, 2016",
+            {{"published", "simple_slicer"}}};
   }
 
   explicit Rectilinear(const Params& params) : params_(params) {}
@@ -124,9 +134,9 @@ class Rectilinear final : public Planner {
     const Frame frame(layer, context);
     const Rules rules = rules_of(params_, layer, context);
     const RectilinearParams& params = rules.params;
-    const bool inset = params.ends == Ends::kInset;
-    const Polygons regions =
-        inset ? offset(frame.polygons(), -context.line_width_mm / 2) : frame.polygons();
+    const Polygons regions = params.ends == Ends::kInset
+                                 ? offset(frame.polygons(), -context.line_width_mm / 2)
+                                 : frame.polygons();
     const double angle_deg = params.angle_deg + (params.alternate && layer.index % 2 != 0 ? 90 : 0);
     const bool both = params.grid && context.density < 1;
     std::vector<Stroke> strokes;
@@ -134,6 +144,9 @@ class Rectilinear final : public Planner {
       fill(region, rules, angle_deg, both ? 2 : 1, context, strokes);
       if (both) fill(region, rules, angle_deg + 90, 2, context, strokes);
     }
+    if (params.thin == Thin::kFill && params.ends == Ends::kInset && context.density >= 1)
+      for (Stroke& stroke : gap_lines(frame.polygons(), {regions}, 1, context))
+        strokes.push_back(std::move(stroke));
     return frame.from_frame({params.order == Sequence::kZigzag
                                  ? to_and_fro(std::move(strokes))
                                  : nearest_first(std::move(strokes), frame.start(), context)});

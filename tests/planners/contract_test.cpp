@@ -88,7 +88,10 @@ struct Faithful {
 };
 const std::vector<Faithful>& faithful() {
   static const std::vector<Faithful> all{
-      {"rectilinear", "published", std::string("simple_slicer")}};
+      {"rectilinear", "published", std::string("simple_slicer")},
+      {"voxel", "rim", std::string("published")},
+      {"voxel", "variant", std::string("published")},
+  };
   return all;
 }
 

@@ -247,5 +247,23 @@ TEST(Rectilinear, ZigzagLaysLineAfterLineToAndFro) {
   }
 }
 
+TEST(Rectilinear, AStripThinnerThanALineIsFilledWhereAllIsDense) {
+  // A square with a tail.
+  const Layer tailed = layer_of(
+      {{{{0, 0}, {10, 0}, {10, 4}, {20, 4}, {20, 4.3125}, {10, 4.3125}, {10, 10}, {0, 10}}, {}}});
+  const auto in_the_tail = [](const Route& route) {
+    double sum_mm = 0;
+    for (const Stroke& stroke : route.strokes)
+      if (stroke.points.front().x > 9.9 && stroke.points.back().x > 9.9) {
+        EXPECT_NEAR(stroke.width_mm, 0.3125, 0.01);
+        sum_mm += length_mm(stroke.points);
+      }
+    return sum_mm;
+  };
+  EXPECT_NEAR(in_the_tail(plan(tailed, context_for(0, 1))), 10, 0.5);
+  EXPECT_EQ(in_the_tail(plan(tailed, context_for(0, 1), {{"thin", word("drop")}})), 0);
+  EXPECT_EQ(in_the_tail(plan(tailed, context_for(0, 0.5))), 0);
+}
+
 }  // namespace
 }  // namespace routebench
