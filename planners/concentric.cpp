@@ -37,7 +37,7 @@ struct ConcentricParams {
   Link link = Link::kTree;
   SeamParams seam;
   Thin thin = Thin::kFill;
-  double min_gap = 0.5;
+  double min_gap = 1.0 / 3;
 
   void bind(ParamBinder& bind) {
     bind("variant", variant, {{"default", Variant::kDefault}, {"published", Variant::kPublished}},
