@@ -261,6 +261,23 @@ TEST(GcodeReader, WidthsComeFromMarks) {
   EXPECT_EQ(print.layers[0].route.strokes[1].points.front(), (Point2{10, 0}));
 }
 
+std::string number(double value);
+
+TEST(GcodeReader, AStrokeOfAnotherHeightThanItsLayersHasTheWidthOfItsVolume) {
+  const double e = section_mm2(0.6) / kFilamentSection;
+  const std::string bridge = ";HEIGHT:0.4\n;WIDTH:0.4\nG1 X10 E" + number(10 * e) +
+                             "\n;HEIGHT:0.2\n;WIDTH:0.45\nG1 Y10 E0.3\n";
+  for (const std::string& text :
+       {kStart + ";LAYER_CHANGE\n;HEIGHT:0.2\n" + bridge,
+        kStart + ";LAYER_CHANGE\n;HEIGHT:0.2\n;WIDTH:0.5\nG1 X0.5 E1\nG0 X0\n" + bridge}) {
+    const GcodeLayer layer = read(text).layers.at(0);
+    EXPECT_EQ(layer.height_mm, 0.2);
+    ASSERT_GE(layer.route.strokes.size(), 2u);
+    EXPECT_NEAR(layer.route.strokes.rbegin()[1].width_mm, 0.6, 1e-6);
+    EXPECT_EQ(layer.route.strokes.back().width_mm, 0.45);
+  }
+}
+
 std::string number(double value) {
   std::ostringstream text;
   text.precision(12);

@@ -38,7 +38,7 @@ double width_of_bead(double section_mm2, double height_mm) {
 
 void PrintBuilder::mark_layer() {
   if (!layer_marks_) drop_priming();
-  layer_marks_ = true;
+  layer_marks_ = layer_height_open_ = true;
   stroke_open_ = false;
   spiral_from_z_mm_.reset();
 }
@@ -51,6 +51,19 @@ void PrintBuilder::mark_type(std::string_view name) {
 }
 
 void PrintBuilder::mark_width(std::optional<double> width_mm) { width_mark_mm_ = width_mm; }
+
+void PrintBuilder::mark_height(double height_mm) {
+  height_mark_mm_ = height_mm;
+  if (layer_marks_ && !layer_height_open_) return;
+  layer_height_mark_mm_ = height_mm;
+  layer_height_open_ = false;
+}
+
+/// The width that the strokes have by their mark. A stroke of another height than its layer's, a
+/// bridge, has none: what it would mean in this layer follows from its volume.
+std::optional<double> PrintBuilder::width_mm() const {
+  return height_mark_mm_ == layer_height_mark_mm_ ? width_mark_mm_ : std::nullopt;
+}
 
 void PrintBuilder::ignore(std::string_view command) { ++print_.ignored[std::string(command)]; }
 
@@ -112,11 +125,11 @@ void PrintBuilder::enter_layer(const Bead& bead) {
   }
   layer_ = layers_.size();
   layer_of_z_.emplace(z_mm, layer_);
-  layers_.push_back({z_mm, height_mark_mm_, {}, {}});
+  layers_.push_back({z_mm, layer_height_mark_mm_, {}, {}});
 }
 
 void PrintBuilder::enter_spiral(const Bead& bead) {
-  const double height_mm = height_mark_mm_.value_or(options_.layer_height_mm);
+  const double height_mm = layer_height_mark_mm_.value_or(options_.layer_height_mm);
   const bool goes_on = spiral_from_z_mm_ &&
                        (layer_marks_ || bead.to_z_mm - *spiral_from_z_mm_ <= height_mm + kLevelMm);
   if (!goes_on) {
@@ -133,9 +146,9 @@ void PrintBuilder::enter_spiral(const Bead& bead) {
 bool PrintBuilder::fits_stroke(const Bead& bead, double length_mm) const {
   const RawLayer& layer = layers_[layer_];
   if (layer.layer.kinds.back() != type_.kind ||
-      layer.layer.route.strokes.back().width_mm != width_mark_mm_.value_or(0))
+      layer.layer.route.strokes.back().width_mm != width_mm().value_or(0))
     return false;
-  if (width_mark_mm_) return true;
+  if (width_mm()) return true;
   constexpr double kSameShare = 0.02;
   constexpr double kRounding = 1.5e-4;  // of E with four decimals, at both ends
   const Body& body = layer.bodies.back();
@@ -146,7 +159,7 @@ bool PrintBuilder::fits_stroke(const Bead& bead, double length_mm) const {
 void PrintBuilder::begin_stroke(Point2 from, const Place& place) {
   RawLayer& layer = layers_[layer_];
   // A width that follows from E is set when all of the stroke and the layer's height are known.
-  layer.layer.route.strokes.push_back({{from}, width_mark_mm_.value_or(0)});
+  layer.layer.route.strokes.push_back({{from}, width_mm().value_or(0)});
   layer.layer.kinds.push_back(type_.kind);
   layer.bodies.push_back({{}, 0, place.line});
   stroke_open_ = true;

@@ -44,7 +44,7 @@ class PrintBuilder {
   void mark_type(std::string_view name);
   /// Nothing: from now on widths follow from E.
   void mark_width(std::optional<double> width_mm);
-  void mark_height(double height_mm) { height_mark_mm_ = height_mm; }
+  void mark_height(double height_mm);
   void state_filament(double diameter_mm) { filament_mm_ = diameter_mm; }
   void ignore(std::string_view command);
 
@@ -73,6 +73,7 @@ class PrintBuilder {
   void enter_spiral(const Bead& bead);
   [[nodiscard]] bool fits_stroke(const Bead& bead, double length_mm) const;
   void begin_stroke(Point2 from, const Place& place);
+  [[nodiscard]] std::optional<double> width_mm() const;
   void exclude(const Bead& bead);
   void drop_priming();
   void warn();
@@ -97,7 +98,9 @@ class PrintBuilder {
   bool returned_ = false;                   ///< to a lower layer
   StrokeType type_;
   std::optional<double> width_mark_mm_;
-  std::optional<double> height_mark_mm_;
+  std::optional<double> height_mark_mm_;        ///< of the strokes
+  std::optional<double> layer_height_mark_mm_;  ///< the first one after the layer's mark
+  bool layer_height_open_ = true;               ///< that one is still to come
   std::optional<double> filament_mm_;
   double waiting_travel_mm_ = 0;  ///< since the last stroke; counts if another one follows
   std::size_t waiting_pulls_ = 0;

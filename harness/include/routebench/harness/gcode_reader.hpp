@@ -63,7 +63,8 @@ struct GcodePrint {
 /// Strokes. Moves that lay material one after another are one stroke as long as kind and width
 /// stay the same. The width is the file's mark (`;WIDTH:`); without one it is that of a bead
 /// (rectangle with round ends) of the stroke's volume, length and layer height, and a stroke ends
-/// where the section changes by more than 2 %. E is mm of filament, of the diameter that the file
+/// where the section changes by more than 2 %. So it is, too, for strokes whose `;HEIGHT:` is not
+/// their layer's (bridges). E is mm of filament, of the diameter that the file
 /// states (M200 has other duties: its D makes E mm3) or that of the options; after
 /// `;FLAVOR:UltiGCode` it is mm3.
 ///
