@@ -47,7 +47,7 @@ constexpr std::array<std::pair<std::string_view, RetractPolicy>, 3> kPolicies{{
     {"manhattan", RetractPolicy::kManhattan},
 }};
 
-constexpr std::array<std::string_view, 1> kFlavours{"marlin"};
+constexpr std::array<std::string_view, 4> kFlavours{"marlin", "klipper", "reprap", "ultigcode"};
 
 // One line a key, in the order of the struct; setting, listing and hints all go through these.
 

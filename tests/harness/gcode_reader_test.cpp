@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <sstream>
@@ -481,7 +482,10 @@ TEST(GcodeReader, LinesMayLieAcrossTheBlocksInWhichAFileIsRead) {
 TEST(GcodeReader, FilesOfTheWriterReadBackExactly) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     const test::Print print = test::random_print(seed);
-    const GcodePrint back = read(test::gcode_of(print, {}, {}));
+    Printer printer;
+    constexpr std::array kFlavours = {"marlin", "klipper", "reprap", "ultigcode"};
+    printer.flavour = kFlavours.at(seed % kFlavours.size());
+    const GcodePrint back = read(test::gcode_of(print, {}, printer));
     ASSERT_EQ(back.layers.size(), print.layers.size());
     for (std::size_t i = 0; i < print.layers.size(); ++i) {
       const PlannedLayer& planned = print.planned[i];

@@ -209,6 +209,55 @@ TEST(Gcode, TheHeadTellsWhatItIs) {
   EXPECT_NE(text.find("\nM83"), text.npos);
 }
 
+Printer printer_of(const std::string& flavour) {
+  Printer printer;
+  set_printer_value(printer, "flavour", flavour);
+  return printer;
+}
+
+TEST(Gcode, EveryFlavourSaysTheSameInItsWay) {
+  const Print print = random_print(4);
+  const GcodeRun marlin = read_gcode(gcode_of(print, {}, {}));
+  for (const std::string flavour : {"klipper", "reprap", "ultigcode"}) {
+    const std::string text = gcode_of(print, {}, printer_of(flavour));
+    const GcodeRun run = read_gcode(text);
+    EXPECT_EQ(run.strokes, marlin.strokes) << flavour;
+    EXPECT_EQ(run.stroke_z_mm, marlin.stroke_z_mm) << flavour;
+    EXPECT_EQ(run.retractions, marlin.retractions) << flavour;
+    EXPECT_EQ(run.travel_mm, marlin.travel_mm) << flavour;
+    EXPECT_NEAR(run.pulled_mm, 0, 1e-9) << flavour;
+    const bool volumes = flavour == "ultigcode";
+    const double unit = volumes ? 1 / (std::numbers::pi * 1.75 * 1.75 / 4) : 1;
+    EXPECT_NEAR(run.filament_mm * unit, marlin.filament_mm, 1e-6 * marlin.filament_mm) << flavour;
+    EXPECT_EQ(text.starts_with(";FLAVOR:UltiGCode\n"), volumes) << flavour;
+    EXPECT_EQ(text.find("\nM83") == text.npos, volumes) << "E's mode is said: " << flavour;
+    EXPECT_EQ(text.find("\nM82") == text.npos, !volumes) << flavour;
+  }
+}
+
+TEST(Gcode, TheFanRunsAboveTheFirstLayer) {
+  const std::string text = gcode_of(random_print(2), {}, {});
+  const GcodeRun run = read_gcode(text);
+  EXPECT_EQ(run.fan_changes, (std::vector<std::string>{"M107", "M106 S", "M107"}));
+  const std::size_t fan = text.find("M106 S255"), first = text.find(";LAYER_CHANGE");
+  const std::size_t second = text.find(";LAYER_CHANGE", first + 1);
+  EXPECT_GT(fan, second);
+  EXPECT_LT(fan, text.find("\nG1", second));
+  // A print of one layer is never cooled.
+  EXPECT_EQ(gcode_of(two_strokes({5, 1}, {5, 2}), {}, {}).find("M106"), text.npos);
+}
+
+TEST(Gcode, TheEndLiftsTheNozzleAndStopsTheMotors) {
+  const auto end_of_file = [](const std::string& flavour) {
+    const std::string text = gcode_of(two_strokes({5, 1}, {5, 2}), {}, printer_of(flavour));
+    return text.substr(text.find("; end of the print\n"));
+  };
+  const std::string lift = "; end of the print\nG1 Z5.2 F9000\n";
+  EXPECT_EQ(end_of_file("marlin"), lift + "M107\nM84 ; motors off\n");
+  EXPECT_EQ(end_of_file("reprap"), lift + "M106 S0\nM84 ; motors off\n");
+  EXPECT_EQ(end_of_file("ultigcode"), lift + "M107\n");
+}
+
 TEST(Gcode, AFlavourThatIsNotWrittenIsRefused) {
   std::ostringstream out;
   Printer printer;

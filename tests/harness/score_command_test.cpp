@@ -132,7 +132,7 @@ TEST_F(ScoreCommand, ARouteReadBackScoresTheSame) {
   }
 }
 
-TEST_F(ScoreCommand, AlsoUnderOtherTasksOrdersAndPolicies) {
+TEST_F(ScoreCommand, AlsoUnderOtherTasksOrdersPoliciesAndFlavours) {
   const std::string model = "shape:bracket";
   const auto same = [&](const std::vector<std::string>& plan_more,
                         const std::vector<std::string>& both) {
@@ -147,6 +147,8 @@ TEST_F(ScoreCommand, AlsoUnderOtherTasksOrdersAndPolicies) {
   for (const char* policy : {"length", "length_and_crossing", "manhattan"})
     same({}, {"--printer", "lift_mm=0.3", "--printer", std::string("retract_policy=") + policy});
   same({"--set", "fill.angle_deg=30", "--order", "stage"}, {"--task", "density=1"});
+  for (const char* flavour : {"klipper", "reprap", "ultigcode"})
+    same({}, {"--printer", std::string("flavour=") + flavour});
   same({}, {"--task", "line_width_mm=0.6", "--task", "layer_height_mm=0.3"});
 }
 
