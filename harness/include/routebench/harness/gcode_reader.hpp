@@ -64,9 +64,10 @@ struct GcodePrint {
 /// stay the same. The width is the file's mark (`;WIDTH:`); without one it is that of a bead
 /// (rectangle with round ends) of the stroke's volume, length and layer height, and a stroke ends
 /// where the section changes by more than 2 %. So it is, too, for strokes whose `;HEIGHT:` is not
-/// their layer's (bridges). E is mm of filament, of the diameter that the file
-/// states (M200 has other duties: its D makes E mm3) or that of the options; after
-/// `;FLAVOR:UltiGCode` it is mm3.
+/// their layer's (bridges).
+///
+/// E counts mm of filament, whose diameter is the one that the file states, else that of the
+/// options. It counts mm3 after `;FLAVOR:UltiGCode` and while M200 with a diameter is in force.
 ///
 /// Layers are heights at which material is laid. Material within 0.005 mm of a layer belongs to it,
 /// also when the nozzle comes back later; then a warning says so. Where Z climbs while material is
