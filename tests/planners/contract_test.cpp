@@ -87,7 +87,11 @@ struct Faithful {
   ParamValue value;
 };
 const std::vector<Faithful>& faithful() {
-  static const std::vector<Faithful> all{};
+  static const std::vector<Faithful> all{
+      {"rectilinear", "published", std::string("simple_slicer")},
+      {"voxel", "rim", std::string("published")},
+      {"voxel", "variant", std::string("published")},
+  };
   return all;
 }
 
