@@ -25,8 +25,8 @@ void check_slot(const ConfiguredContender& contender, const std::string& slot_na
   };
   checked("planner", [&] { static_cast<void>(registry.at(slot.planner)); });
   const Registry::Entry& entry = registry.at(slot.planner);
-  for (const auto& [key, value] : slot.params)
-    checked(key, [&] { static_cast<void>(entry.resolve({{key, value}})); });
+  for (const auto& param : slot.params)
+    checked(param.first, [&] { static_cast<void>(entry.resolve({param})); });
 }
 
 Json keep_json(const KeepLayers& keep) {

@@ -13,6 +13,12 @@ Json layer_document(const LayerScore& layer) {
   return json;
 }
 
+Json layer_documents(const std::vector<LayerScore>& layers) {
+  Json json = Json::array();
+  for (const LayerScore& layer : layers) json.push_back(layer_document(layer));
+  return json;
+}
+
 Json layer_document(const Layer& layer) {
   std::size_t holes = 0;
   for (const Polygon& polygon : layer.polygons) holes += polygon.holes.size();
@@ -29,8 +35,6 @@ Json layer_document(const Layer& layer) {
 }  // namespace
 
 Json plan_document(const PlanResult& result) {
-  Json layers = Json::array();
-  for (const LayerScore& layer : result.cell.layers) layers.push_back(layer_document(layer));
   return {{"model", result.model.spec},
           {"contender", json_of(result.contender)},
           {"task", json_of(result.judge.task())},
@@ -40,9 +44,44 @@ Json plan_document(const PlanResult& result) {
           {"reason", result.cell.verdict.reason},
           {"layers", result.layers},
           {"totals", json_of(result.cell.totals)},
-          {"per_layer", std::move(layers)},
+          {"per_layer", layer_documents(result.cell.layers)},
           {"mesh", mesh_of(result.model)},
           {"warnings", result.model.warnings}};
+}
+
+Json score_document(const ScoreResult& result) {
+  const GcodePrint& print = result.print;
+  const LayerPairs& pairs = result.score.pairs;
+  const SlicedModel* const model = result.model;
+  Json unpaired_z = Json::array(), missing = Json::array(), ignored = Json::object();
+  for (const std::size_t layer : pairs.unpaired) unpaired_z.push_back(print.layers[layer].z_mm);
+  for (const std::size_t place : result.chosen)
+    if (!pairs.file_layers[place]) missing.push_back(model->layers[place].index);
+  for (const auto& [command, count] : print.ignored) ignored[command] = count;
+  const Verdict& verdict = result.score.cell.verdict;
+  const Point2 offset = result.score.offset_mm;
+  return {{"file", result.file},
+          {"model", model ? Json(model->spec) : Json(nullptr)},
+          {"task", json_of(result.judge.task())},
+          {"printer", json_of(result.judge.printer())},
+          {"outcome", model ? Json(to_string(verdict.outcome)) : Json(nullptr)},
+          {"reason", model ? Json(verdict.reason) : Json(nullptr)},
+          {"layers", result.score.cell.layers.size()},
+          {"offset_mm", model ? Json{offset.x, offset.y} : Json(nullptr)},
+          {"paired_layers", model ? Json(pairs.count(result.chosen)) : Json(nullptr)},
+          {"missing_layers", model ? missing : Json(nullptr)},
+          {"unpaired_z_mm", model ? unpaired_z : Json(nullptr)},
+          {"file_layers", print.layers.size()},
+          {"file_retractions", print.retractions},
+          {"file_travel_mm", print.travel_mm},
+          {"file_filament_mm3", print.filament_mm3},
+          {"file_excluded_strokes", print.excluded_strokes},
+          {"file_excluded_mm", print.excluded_mm},
+          {"file_ignored", std::move(ignored)},
+          {"totals", json_of(result.score.cell.totals)},
+          {"per_layer", layer_documents(result.score.cell.layers)},
+          {"mesh", model ? mesh_of(*model) : Json(nullptr)},
+          {"warnings", print.warnings}};
 }
 
 Json slice_document(const SlicedModel& model, std::string_view method) {

@@ -4,9 +4,12 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "json_parts.hpp"
 #include "routebench/harness/contender.hpp"
+#include "routebench/harness/gcode_reader.hpp"
+#include "routebench/harness/gcode_score.hpp"
 #include "routebench/harness/judge.hpp"
 #include "routebench/harness/pipeline.hpp"
 
@@ -22,6 +25,19 @@ struct PlanResult {
   const JudgedCell& cell;
 };
 [[nodiscard]] Json plan_document(const PlanResult& result);
+
+/// What `score` has done, for its document.
+struct ScoreResult {
+  const std::string& file;
+  const GcodePrint& print;
+  const SlicedModel* model;                ///< nullptr: none
+  const std::vector<std::size_t>& chosen;  ///< of its layers
+  const Judge& judge;
+  const GcodeScore& score;
+};
+/// As plan_document, and beside that: offset_mm, what was paired, what the file itself says. The
+/// outcome is null without a model.
+[[nodiscard]] Json score_document(const ScoreResult& result);
 
 [[nodiscard]] Json slice_document(const SlicedModel& model, std::string_view method);
 

@@ -82,6 +82,7 @@ int main(int argc, char** argv) {
   int exit_code = 0;
   routebench::add_run_command(app, exit_code);
   routebench::add_plan_command(app, exit_code);
+  routebench::add_score_command(app, exit_code);
   routebench::add_slice_command(app, exit_code);
   routebench::add_planners_command(app, exit_code);
   routebench::add_check_planner_command(app, exit_code);

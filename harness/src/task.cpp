@@ -57,7 +57,7 @@ constexpr std::array<std::pair<std::string_view, SkinRule>, 3> kSkinRules{{
     {"near", SkinRule::kNear},
 }};
 
-constexpr std::array<std::string_view, 1> kFlavours{"marlin"};
+constexpr std::array<std::string_view, 4> kFlavours{"marlin", "klipper", "reprap", "ultigcode"};
 
 // One line a key, in the order of the struct; setting, listing and hints all go through these.
 

@@ -7,6 +7,7 @@
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "routebench/geometry/types.hpp"
@@ -24,13 +25,17 @@ struct GcodeRun {
   std::vector<double> stroke_z_mm;           ///< height of each
   std::vector<double> travel_heights_mm;     ///< height of each travelling move
   std::vector<std::string> comments;
+  std::vector<std::string> fan_changes;
 };
 
-/// Follows absolute X Y Z and relative E. Throws std::runtime_error for what it does not know.
+/// Follows absolute X Y Z, relative or absolute E, and G10 and G11 as pulls of 1. Throws
+/// std::runtime_error for what it does not know.
 inline GcodeRun read_gcode(const std::string& text) {
   GcodeRun run;
   std::optional<double> x, y, z;
-  bool absolute_xyz = false, relative_e = false, millimetres = false, pushing = false;
+  bool absolute_xyz = false, relative_e = false, absolute_e = false, millimetres = false;
+  bool pushing = false;
+  double counter = 0;
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) {
     if (const auto semicolon = line.find(';'); semicolon != line.npos) {
@@ -46,14 +51,27 @@ inline GcodeRun read_gcode(const std::string& text) {
       absolute_xyz = true;
     } else if (code == "M83") {
       relative_e = true;
+    } else if (code == "M82") {
+      absolute_e = true;
+    } else if (code == "G92" || code == "M106" || code == "M107" || code == "M84") {
+      std::string word;
+      if (code == "G92" && (!(words >> word) || word != "E0")) throw std::runtime_error(line);
+      if (code == "M106" || code == "M107") run.fan_changes.push_back(line.substr(0, 6));
+      if (code == "G92") counter = 0;
+    } else if (code == "G10" || code == "G11") {
+      pushing = false;
+      run.retractions += code == "G10" ? 1 : 0;
+      run.pulled_mm += code == "G10" ? 1 : -1;
     } else if (code == "G0" || code == "G1") {
-      if (!absolute_xyz || !relative_e || !millimetres) throw std::runtime_error("modes unsaid");
+      if (!absolute_xyz || relative_e == absolute_e || !millimetres)
+        throw std::runtime_error("modes unsaid");
       std::map<char, double> word;
       for (std::string w; words >> w;) {
         if (w.find_first_not_of("0123456789.-", 1) != w.npos) throw std::runtime_error(line);
         word[w[0]] = std::stod(w.substr(1));
       }
-      const double e = word.count('E') ? word['E'] : 0;
+      double e = word.count('E') ? word['E'] : 0;
+      if (absolute_e && word.count('E')) e -= std::exchange(counter, e);
       const bool moves = word.count('X') || word.count('Y');
       const Point2 from{x.value_or(0), y.value_or(0)};
       if (word.count('X')) x = word['X'];

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "fixed_point.hpp"
+#include "gcode_prints.hpp"
 #include "gcode_reader.hpp"
 #include "random_polygons.hpp"
 #include "routebench/geometry/error.hpp"
@@ -19,51 +20,11 @@
 namespace routebench {
 namespace {
 
+using test::gcode_of;
 using test::GcodeRun;
+using test::Print;
+using test::random_print;
 using test::read_gcode;
-
-struct Print {
-  std::vector<Layer> layers;
-  std::vector<PlannedLayer> planned;
-};
-
-/// Strokes of 2 to 40 points, from 0.001 mm to several mm a step, on three layers of one plate.
-Print random_print(std::uint64_t seed) {
-  std::mt19937_64 random(seed);
-  std::uniform_real_distribution<double> place(-40, 40), log_step(-3, 1), angle(0, 6.283);
-  std::uniform_int_distribution<int> count(2, 40), kind(0, 2);
-  Print print;
-  for (int index = 0; index < 3; ++index) {
-    print.layers.push_back({.index = index,
-                            .z_mm = 0.2 * index + 0.1,
-                            .height_mm = 0.2,
-                            .polygons = {{test::rectangle(-50, -50, 50, 50), {}}},
-                            .solid = {}});
-    PlannedLayer planned;
-    for (int s = 0; s < 30; ++s) {
-      Stroke stroke{{snap(Point2{place(random), place(random)})}, s % 2 == 0 ? 0.45 : 0.6};
-      for (int k = count(random); k > 1; --k) {
-        const double step = std::pow(10, log_step(random)), a = angle(random);
-        const Point2 from = stroke.points.back();
-        stroke.points.push_back(
-            snap(Point2{from.x + step * std::cos(a), from.y + step * std::sin(a)}));
-      }
-      planned.route.strokes.push_back(stroke);
-      planned.kinds.push_back(static_cast<StrokeKind>(kind(random)));
-    }
-    print.planned.push_back(planned);
-  }
-  return print;
-}
-
-std::string gcode_of(const Print& print, const Task& task, const Printer& printer) {
-  std::ostringstream out;
-  GcodeWriter writer(out, task, printer, {});
-  for (std::size_t i = 0; i < print.layers.size(); ++i)
-    writer.write_layer(print.layers[i], print.planned[i]);
-  writer.finish();
-  return out.str();
-}
 
 /// A rectangle with round ends, 0.2 mm high.
 double section_mm2(double width_mm) { return (width_mm - 0.2) * 0.2 + std::numbers::pi * 0.01; }
@@ -246,6 +207,55 @@ TEST(Gcode, TheHeadTellsWhatItIs) {
   EXPECT_NE(text.find("\n; task.line_width_mm = 0.45\n"), text.npos);
   EXPECT_NE(text.find("\n; printer.retract_over_mm = 2\n"), text.npos);
   EXPECT_NE(text.find("\nM83"), text.npos);
+}
+
+Printer printer_of(const std::string& flavour) {
+  Printer printer;
+  set_printer_value(printer, "flavour", flavour);
+  return printer;
+}
+
+TEST(Gcode, EveryFlavourSaysTheSameInItsWay) {
+  const Print print = random_print(4);
+  const GcodeRun marlin = read_gcode(gcode_of(print, {}, {}));
+  for (const std::string flavour : {"klipper", "reprap", "ultigcode"}) {
+    const std::string text = gcode_of(print, {}, printer_of(flavour));
+    const GcodeRun run = read_gcode(text);
+    EXPECT_EQ(run.strokes, marlin.strokes) << flavour;
+    EXPECT_EQ(run.stroke_z_mm, marlin.stroke_z_mm) << flavour;
+    EXPECT_EQ(run.retractions, marlin.retractions) << flavour;
+    EXPECT_EQ(run.travel_mm, marlin.travel_mm) << flavour;
+    EXPECT_NEAR(run.pulled_mm, 0, 1e-9) << flavour;
+    const bool volumes = flavour == "ultigcode";
+    const double unit = volumes ? 1 / (std::numbers::pi * 1.75 * 1.75 / 4) : 1;
+    EXPECT_NEAR(run.filament_mm * unit, marlin.filament_mm, 1e-6 * marlin.filament_mm) << flavour;
+    EXPECT_EQ(text.starts_with(";FLAVOR:UltiGCode\n"), volumes) << flavour;
+    EXPECT_EQ(text.find("\nM83") == text.npos, volumes) << "E's mode is said: " << flavour;
+    EXPECT_EQ(text.find("\nM82") == text.npos, !volumes) << flavour;
+  }
+}
+
+TEST(Gcode, TheFanRunsAboveTheFirstLayer) {
+  const std::string text = gcode_of(random_print(2), {}, {});
+  const GcodeRun run = read_gcode(text);
+  EXPECT_EQ(run.fan_changes, (std::vector<std::string>{"M107", "M106 S", "M107"}));
+  const std::size_t fan = text.find("M106 S255"), first = text.find(";LAYER_CHANGE");
+  const std::size_t second = text.find(";LAYER_CHANGE", first + 1);
+  EXPECT_GT(fan, second);
+  EXPECT_LT(fan, text.find("\nG1", second));
+  // A print of one layer is never cooled.
+  EXPECT_EQ(gcode_of(two_strokes({5, 1}, {5, 2}), {}, {}).find("M106"), text.npos);
+}
+
+TEST(Gcode, TheEndLiftsTheNozzleAndStopsTheMotors) {
+  const auto end_of_file = [](const std::string& flavour) {
+    const std::string text = gcode_of(two_strokes({5, 1}, {5, 2}), {}, printer_of(flavour));
+    return text.substr(text.find("; end of the print\n"));
+  };
+  const std::string lift = "; end of the print\nG1 Z5.2 F9000\n";
+  EXPECT_EQ(end_of_file("marlin"), lift + "M107\nM84 ; motors off\n");
+  EXPECT_EQ(end_of_file("reprap"), lift + "M106 S0\nM84 ; motors off\n");
+  EXPECT_EQ(end_of_file("ultigcode"), lift + "M107\n");
 }
 
 TEST(Gcode, AFlavourThatIsNotWrittenIsRefused) {

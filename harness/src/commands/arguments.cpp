@@ -189,6 +189,15 @@ void print_rows(std::ostream& out, const std::vector<Row>& rows) {
   }
 }
 
+std::vector<Row> rows_of(const Scores& scores) {
+  std::vector<Row> rows;
+  for (std::size_t i = 0; i < scores.size(); ++i)
+    if (scores[i])
+      rows.push_back({std::string(metric_table()[i].label), readable(*scores[i]),
+                      std::string(metric_table()[i].unit)});
+  return rows;
+}
+
 std::string readable(double value) {
   const double size = std::abs(value);
   const bool whole = value == std::trunc(value) && size < 1e15;

@@ -8,6 +8,7 @@
 
 #include "json_parts.hpp"
 #include "routebench/harness/contender.hpp"
+#include "routebench/harness/metrics.hpp"
 #include "routebench/harness/output.hpp"
 #include "routebench/harness/task.hpp"
 #include "routebench/planning/registry.hpp"
@@ -58,6 +59,9 @@ struct Row {
 };
 /// Rows with aligned columns: labels to the left, values to the right.
 void print_rows(std::ostream& out, const std::vector<Row>& rows);
+
+/// One row for each metric that there is.
+[[nodiscard]] std::vector<Row> rows_of(const Scores& scores);
 
 /// A number for people: whole ones in full, others with a sensible number of digits.
 [[nodiscard]] std::string readable(double value);

@@ -146,11 +146,7 @@ class Plan {
         << to_string(cell_.verdict.outcome);
     if (!cell_.verdict.reason.empty()) out << ": " << cell_.verdict.reason;
     out << '\n';
-    std::vector<Row> rows;
-    for (std::size_t i = 0; i < cell_.totals.size(); ++i)
-      if (cell_.totals[i])
-        rows.push_back({std::string(metric_table()[i].label), readable(*cell_.totals[i]),
-                        std::string(metric_table()[i].unit)});
+    const std::vector<Row> rows = rows_of(cell_.totals);
     if (!rows.empty()) out << '\n';
     print_rows(out, rows);
   }

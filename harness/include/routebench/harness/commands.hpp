@@ -11,6 +11,7 @@ namespace routebench {
 
 void add_run_command(CLI::App& app, int& exit_code);
 void add_plan_command(CLI::App& app, int& exit_code);
+void add_score_command(CLI::App& app, int& exit_code);
 void add_slice_command(CLI::App& app, int& exit_code);
 void add_planners_command(CLI::App& app, int& exit_code);
 void add_check_planner_command(CLI::App& app, int& exit_code);

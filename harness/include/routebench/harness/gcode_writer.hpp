@@ -1,5 +1,5 @@
 #pragma once
-/// Routes as G-code for a printer: plain Marlin.
+/// Routes as G-code for a printer.
 
 #include <cstdint>
 #include <iosfwd>
@@ -15,16 +15,22 @@
 
 namespace routebench {
 
+struct GcodeDialect;
+
 /// Writes layers of routes, one after the other, as they come.
 ///
-/// X, Y, Z absolute, E relative (M83), millimetres. Coordinates have the seven decimals that the
-/// grid needs, so that a reader gets the very points of the route; E counts millimetres of filament
-/// and carries its rounding along, so that sums are right to 0.00001 mm. The filament is pulled
-/// back on exactly the travels on which the judge counts a retraction; the way to the first stroke
-/// of the print comes before the first layer mark and is no travel. Moves that vanish in rounding
-/// are dropped. Layer, type and width marks are comments in the manner of PrusaSlicer.
+/// X, Y, Z absolute, millimetres. Coordinates have the seven decimals that the grid needs, so that
+/// a reader gets the very points of the route; E carries its rounding along, so that sums are right
+/// to 0.00001. The filament is pulled back on exactly the travels on which the judge counts a
+/// retraction; the way to the first stroke of the print comes before the first layer mark and is no
+/// travel. Moves that vanish in rounding are dropped. Layer, type and width marks are comments in
+/// the manner of PrusaSlicer.
 ///
-/// Heating, homing and cooling are the printer's own start and end code and are not written.
+/// Flavours. `marlin`, `klipper` and `reprap` have E relative (M83) in mm of filament, and pull it
+/// back by retract_mm. `ultigcode` (Ultimaker 2) has E absolute (M82) in mm3 and leaves the amount
+/// to the printer (G10, G11). The fan is off on the first layer that is printed and on above it.
+/// The end block lifts the nozzle, stops the fan and, but for `ultigcode`, the motors. Heating and
+/// homing are the printer's own start code and are not written.
 class GcodeWriter {
  public:
   /// Takes  comment lines for the head of the file (model, contender, ...).
@@ -36,7 +42,7 @@ class GcodeWriter {
   /// Cost linear in the points.
   void write_layer(const Layer& layer, const PlannedLayer& planned);
 
-  /// Writes the last lines.
+  /// Writes the end block.
   void finish();
 
  private:
@@ -48,6 +54,8 @@ class GcodeWriter {
   void mark_stroke(Type type, double width_mm);
   void travel(Point2 to, const EdgeGrid& outline);
   void extrude(const Stroke& stroke);
+  void pull_back();
+  void push_again();
   void move_filament(double mm);
   void move_to_height(double z_mm);
   void append_place(Point2 p);
@@ -57,6 +65,7 @@ class GcodeWriter {
   std::ostream& out_;
   Task task_;
   Printer printer_;
+  const GcodeDialect* dialect_;
   std::string line_;
   std::optional<Point2> nozzle_;  ///< nothing before the first stroke
   double layer_z_mm_ = 0;         ///< of the nozzle while it prints this layer
@@ -64,7 +73,8 @@ class GcodeWriter {
   std::optional<double> speed_mm_s_;
   std::optional<Type> type_;  ///< as last marked
   std::optional<double> width_mm_;
-  double filament_mm_ = 0;           ///< that the strokes so far need
+  int layers_begun_ = 0;
+  double filament_ = 0;              ///< that the strokes so far need, mm or mm3
   std::int64_t filament_units_ = 0;  ///< that was written for them
 };
 

@@ -74,9 +74,9 @@ struct Printer {
   double extrude_mm_s = 60;
   double travel_mm_s = 150;
   double accel_mm_s2 = 1000;
-  double junction_mm = 0.013;  ///< junction deviation
-  double filament_mm = 1.75;   ///< diameter
-  std::string flavour = "marlin";
+  double junction_mm = 0.013;      ///< junction deviation
+  double filament_mm = 1.75;       ///< diameter
+  std::string flavour = "marlin";  ///< of G-code; see GcodeWriter
 };
 
 /// A bound key of a [task] or [printer] table: set by name from a config or a command line, listed

@@ -1,0 +1,57 @@
+#include "gcode/comments.hpp"
+
+#include <optional>
+#include <string>
+
+#include "gcode/words.hpp"
+
+namespace routebench::gcode {
+namespace {
+
+/// The text after a key; nothing if the text does not begin with it.
+std::optional<std::string_view> after(std::string_view key, std::string_view text) {
+  if (!text.starts_with(key)) return std::nullopt;
+  return trimmed(text.substr(key.size()));
+}
+
+std::optional<std::string_view> after_either(std::string_view one, std::string_view other,
+                                             std::string_view text) {
+  const std::optional<std::string_view> value = after(one, text);
+  return value ? value : after(other, text);
+}
+
+double measure(std::string_view text, std::string_view what, const Place& place) {
+  const std::optional<double> number = decimal_in(text);
+  constexpr double kMostMm = 1000;
+  if (!number || *number > kMostMm)
+    place.refuse("the mark of a " + std::string(what) + " is not a number up to 1000 mm");
+  return *number;
+}
+
+}  // namespace
+
+void read_comment(std::string_view text, const Place& place, PrintBuilder& print,
+                  Machine& machine) {
+  text = trimmed(text);
+  if (text == "LAYER_CHANGE" || text == "CHANGE_LAYER" || text.starts_with("LAYER:")) {
+    print.mark_layer();
+  } else if (const auto type = after_either("TYPE:", "FEATURE:", text)) {
+    print.mark_type(*type);
+  } else if (const auto width = after_either("WIDTH:", "LINE_WIDTH:", text)) {
+    const double mm = measure(*width, "width", place);
+    print.mark_width(mm > 0 ? std::optional(mm) : std::nullopt);
+  } else if (const auto height = after_either("HEIGHT:", "LAYER_HEIGHT:", text)) {
+    const double mm = measure(*height, "height", place);
+    if (!(mm > 0)) place.refuse("the mark of a height is not positive");
+    print.mark_height(mm);
+  } else if (const auto flavour = after("FLAVOR:", text)) {
+    if (*flavour == "UltiGCode") machine.use_volumetric_e();
+  } else if (const auto diameter =
+                 after_either("filament_diameter =", "printer.filament_mm =", text)) {
+    // One for each tool; the first is meant.
+    const std::optional<double> mm = decimal_in(trimmed(diameter->substr(0, diameter->find(','))));
+    if (mm && *mm > 0) print.state_filament(*mm);
+  }
+}
+
+}  // namespace routebench::gcode
