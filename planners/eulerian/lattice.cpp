@@ -1,0 +1,227 @@
+#include "eulerian/lattice.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "routebench/geometry/error.hpp"
+#include "routebench/geometry/grid.hpp"
+#include "routebench/geometry/region.hpp"
+#include "routebench/geometry/vec.hpp"
+#include "routebench/planning/line_crossings.hpp"
+#include "routebench/planning/walls.hpp"
+
+namespace routebench::eulerian {
+namespace {
+
+// Offsets wave by up to this where their outline is level (see region.hpp).
+constexpr double kWaveMm = 0.01;
+// An even number of lines is worth to lie so much nearer or farther than wanted.
+constexpr double kEvenSlack = 0.1;
+constexpr double kMostPlaces = 67108864;  // 2^26
+// In pitches: how far outside a place may lie to be pulled in, how far inside to be pushed out, how
+// near to each other nodes may come by that, and how long a way along the wall may be.
+constexpr double kPullIn = 0.5, kPushOut = 0.25, kNearest = 0.5, kLongestWay = 2;
+
+double mean_step_mm(const Axis& x, const Axis& y) { return std::sqrt(x.step_mm * y.step_mm); }
+
+}  // namespace
+
+Axis fitted_axis(double low_mm, double high_mm, const Pitch& pitch) {
+  const double inner_mm = high_mm - low_mm - 2 * kWaveMm;
+  if (inner_mm < pitch.wanted_mm / 2) return {(low_mm + high_mm) / 2, pitch.wanted_mm, 1};
+  const double least_gaps = std::max(1.0, std::ceil(inner_mm / pitch.widest_mm));
+  double gaps = std::max(std::round(inner_mm / pitch.wanted_mm), least_gaps);
+  if (std::fmod(gaps, 2) == 0) {
+    for (const double odd : {gaps - 1, gaps + 1}) {
+      const double share = inner_mm / odd / pitch.wanted_mm;
+      if (odd >= least_gaps && std::abs(share - 1) <= kEvenSlack) {
+        gaps = odd;
+        break;
+      }
+    }
+  }
+  return {low_mm + kWaveMm, inner_mm / gaps, static_cast<std::uint32_t>(gaps) + 1};
+}
+
+Lattice::Lattice(const Polygon& region, const Pitch& pitch) : pitch_(pitch), edges_({region}) {
+  const Box2 box = bounding_box({region});
+  x_ = fitted_axis(box.lower.x, box.upper.x, pitch);
+  y_ = fitted_axis(box.lower.y, box.upper.y, pitch);
+  const double places = (x_.count + 2.0) * (y_.count + 2.0);
+  if (!(places <= kMostPlaces))
+    throw Error(ErrorKind::kBadInput, "eulerian: a region takes " +
+                                          std::to_string(static_cast<long long>(places)) +
+                                          " places at this line width, more than 67108864");
+  stride_ = x_.count + 2;
+  wall_.rings = rings_of({region});
+  for (const Ring& ring : wall_.rings) {
+    std::vector<double> along{0};
+    for (std::size_t i = 0; i < ring.size(); ++i)
+      along.push_back(along.back() + distance(ring[i], ring[i + 1 == ring.size() ? 0 : i + 1]));
+    wall_.along_mm.push_back(std::move(along));
+  }
+  const auto size = static_cast<std::size_t>(places);
+  has_.assign(size, 0);
+  joined_.assign(size, 0);
+  rim_of_.assign(size, kNone);
+  mark_inside();
+  find_rims();
+  pull_in();
+  join();
+}
+
+Point2 Lattice::lattice_place(std::uint32_t node) const {
+  return snap(Point2{x_.at(column(node)), y_.at(row(node))});
+}
+
+Point2 Lattice::place(std::uint32_t node) const {
+  if (rim_of_[node] != kNone && rims_[rim_of_[node]].taken) return rims_[rim_of_[node]].place.point;
+  return lattice_place(node);
+}
+
+void Lattice::mark_inside() {
+  const EvenLines lines{y_.first_mm, y_.step_mm, y_.count};
+  const std::vector<Crossing> crossings = cross_lines(wall_.rings, lines, CrossingSearch::kBucket);
+  // Every line has an even number of crossings.
+  for (std::size_t i = 0; i + 1 < crossings.size(); i += 2) {
+    const auto begin = std::max(0.0, std::ceil((crossings[i].x - x_.first_mm) / x_.step_mm));
+    const auto end =
+        std::min(x_.count - 1.0, std::floor((crossings[i + 1].x - x_.first_mm) / x_.step_mm));
+    const std::uint32_t row = (crossings[i].line + 1) * stride_ + 1;
+    for (double column = begin; column <= end; column += 1)
+      has_[row + static_cast<std::uint32_t>(column)] = 1;
+  }
+}
+
+void Lattice::find_rims() {
+  const double reach_mm = std::max(x_.step_mm, y_.step_mm);
+  const auto range = [&](double low, double high, const Axis& axis) {
+    const double from = std::ceil((low - reach_mm - axis.first_mm) / axis.step_mm);
+    const double to = std::floor((high + reach_mm - axis.first_mm) / axis.step_mm);
+    return std::pair(static_cast<std::uint32_t>(std::max(from, 0.0)),
+                     static_cast<std::uint32_t>(std::clamp(to + 1, 0.0, static_cast<double>(axis.count))));
+  };
+  const auto look = [&](Point2 a, Point2 b, std::uint32_t ring, std::uint32_t edge) {
+    const auto [left, right] = range(std::min(a.x, b.x), std::max(a.x, b.x), x_);
+    const auto [low, high] = range(std::min(a.y, b.y), std::max(a.y, b.y), y_);
+    for (std::uint32_t row = low; row < high; ++row)
+      for (std::uint32_t column = left; column < right; ++column) {
+        const std::uint32_t node = (row + 1) * stride_ + column + 1;
+        const Point2 p{x_.at(column), y_.at(row)};
+        const Point2 near = nearest_on_segment(p, a, b);
+        const double squared = squared_distance(p, near);
+        if (squared > reach_mm * reach_mm) continue;
+        if (rim_of_[node] == kNone) {
+          rim_of_[node] = static_cast<std::uint32_t>(rims_.size());
+          rims_.push_back({squared, {edge, near}, ring, false});
+        } else if (Rim& rim = rims_[rim_of_[node]]; squared < rim.squared_mm) {
+          rim = {squared, {edge, near}, ring, false};
+        }
+      }
+  };
+  for (std::uint32_t r = 0; r < wall_.rings.size(); ++r) {
+    const Ring& ring = wall_.rings[r];
+    for (std::uint32_t e = 0; e < ring.size(); ++e) {
+      const Point2 a = ring[e], b = ring[e + 1 == ring.size() ? 0 : e + 1];
+      // A slanted edge's box would hold many nodes that are far from it.
+      const double pieces = std::ceil(distance(a, b) / (2 * reach_mm));
+      for (double i = 0; i < pieces; i += 1)
+        look(lerp(a, b, i / pieces), i + 1 < pieces ? lerp(a, b, (i + 1) / pieces) : b, r, e);
+    }
+  }
+  for (Rim& rim : rims_) rim.place.point = snap(rim.place.point);
+}
+
+void Lattice::pull_in() {
+  const double pitch_mm = mean_step_mm(x_, y_);
+  struct Candidate {
+    double squared_mm;
+    std::uint32_t node;
+  };
+  std::vector<Candidate> inner, outer;
+  for (std::uint32_t node = first(); node < last(); ++node) {
+    if (rim_of_[node] == kNone) continue;
+    const double squared_mm = rims_[rim_of_[node]].squared_mm;
+    const double reach_mm = (has_[node] ? kPushOut : kPullIn) * pitch_mm;
+    if (squared_mm <= reach_mm * reach_mm)
+      (has_[node] ? inner : outer).push_back({squared_mm, node});
+  }
+  for (std::vector<Candidate>* candidates : {&inner, &outer}) {
+    std::sort(candidates->begin(), candidates->end(), [](const Candidate& a, const Candidate& b) {
+      return a.squared_mm != b.squared_mm ? a.squared_mm < b.squared_mm : a.node < b.node;
+    });
+    for (const Candidate& candidate : *candidates) {
+      Rim& rim = rims_[rim_of_[candidate.node]];
+      if (!is_free(candidate.node, rim.place.point)) continue;
+      has_[candidate.node] = 1;
+      rim.taken = true;
+    }
+  }
+}
+
+bool Lattice::is_free(std::uint32_t node, Point2 p) const {
+  const double nearest_mm = kNearest * mean_step_mm(x_, y_);
+  for (const std::uint32_t row : {node - stride_, node, node + stride_})
+    for (const std::uint32_t other : {row - 1, row, row + 1})
+      if (other != node && has_[other] &&
+          squared_distance(place(other), p) < nearest_mm * nearest_mm * (1 - 1e-6))
+        return false;
+  return true;
+}
+
+void Lattice::join() {
+  for (std::uint32_t node = first(); node < last(); ++node) {
+    if (!has_[node]) continue;
+    if (has_[node + 1] && has_way(node, node + 1)) joined_[node] |= kRight;
+    if (has_[node + stride_] && has_way(node, node + stride_)) joined_[node] |= kUp;
+  }
+}
+
+bool Lattice::has_way(std::uint32_t a, std::uint32_t b) const {
+  // What is farther from the boundary than a step has no wall within a step.
+  if (rim_of_[a] == kNone && rim_of_[b] == kNone) return true;
+  const Point2 from = place(a), to = place(b);
+  return edges_.covers(from, to) || along_wall(a, b);
+}
+
+bool Lattice::joined(std::uint32_t a, std::uint32_t b) const {
+  const auto [low, high] = std::minmax(a, b);
+  if (high == low + 1) return joined_right(low);
+  if (high == low + stride_) return joined_up(low);
+  return has_[a] && has_[b] && has_way(a, b);
+}
+
+std::optional<std::vector<Point2>> Lattice::along_wall(std::uint32_t a, std::uint32_t b) const {
+  if (rim_of_[a] == kNone || rim_of_[b] == kNone) return std::nullopt;
+  const Rim& from = rims_[rim_of_[a]];
+  const Rim& to = rims_[rim_of_[b]];
+  if (!from.taken || !to.taken || from.ring != to.ring) return std::nullopt;
+  const Ring& ring = wall_.rings[from.ring];
+  const std::vector<double>& along = wall_.along_mm[from.ring];
+  const auto at = [&](const Rim& rim) {
+    return along[rim.place.edge] + distance(ring[rim.place.edge], rim.place.point);
+  };
+  double ahead_mm = at(to) - at(from);
+  if (ahead_mm < 0) ahead_mm += along.back();
+  const double back_mm = along.back() - ahead_mm;
+  if (std::min(ahead_mm, back_mm) > kLongestWay * pitch_.widest_mm) return std::nullopt;
+  if (ahead_mm <= back_mm) return path_along(ring, from.place, to.place);
+  std::vector<Point2> path = path_along(ring, to.place, from.place);
+  std::reverse(path.begin(), path.end());
+  return path;
+}
+
+void Lattice::append_way(std::uint32_t a, std::uint32_t b, std::vector<Point2>& points) const {
+  const Point2 from = place(a), to = place(b);
+  if (rim_of_[a] != kNone && rim_of_[b] != kNone && !edges_.covers(from, to)) {
+    if (const auto path = along_wall(a, b)) {
+      points.insert(points.end(), path->begin() + 1, path->end());
+      return;
+    }
+  }
+  points.push_back(to);
+}
+
+}  // namespace routebench::eulerian
