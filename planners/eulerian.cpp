@@ -50,7 +50,8 @@ class Eulerian final : public Planner {
   void lay_tree(const Polygon& region, int layer_index, const PlanContext& context,
                 std::vector<Stroke>& strokes) const {
     const eulerian::Lattice lattice(
-        region, {context.line_distance_mm(), context.line_width_mm / context.density});
+        region, {context.line_distance_mm(), context.line_width_mm / context.density,
+                 context.line_width_mm / 2, context.density >= 1});
     const eulerian::TreeOrder order = params_.prefer == Prefer::kFirst ? eulerian::TreeOrder::kFirst
                                       : layer_index % 2 == 0           ? eulerian::TreeOrder::kRows
                                                              : eulerian::TreeOrder::kColumns;

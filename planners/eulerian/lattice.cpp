@@ -28,27 +28,34 @@ double mean_step_mm(const Axis& x, const Axis& y) { return std::sqrt(x.step_mm *
 
 }  // namespace
 
-Axis fitted_axis(double low_mm, double high_mm, const Pitch& pitch) {
+Axis axis_over(double low_mm, double high_mm, const Pitch& pitch) {
+  if (!pitch.fit) {
+    const double first = std::ceil((low_mm - pitch.margin_mm) / pitch.wanted_mm);
+    const double last = std::floor((high_mm + pitch.margin_mm) / pitch.wanted_mm);
+    return {first * pitch.wanted_mm, pitch.wanted_mm, static_cast<std::uint32_t>(last - first + 1)};
+  }
   const double inner_mm = high_mm - low_mm - 2 * kWaveMm;
-  if (inner_mm < pitch.wanted_mm / 2) return {(low_mm + high_mm) / 2, pitch.wanted_mm, 1};
-  const double least_gaps = std::max(1.0, std::ceil(inner_mm / pitch.widest_mm));
-  double gaps = std::max(std::round(inner_mm / pitch.wanted_mm), least_gaps);
-  if (std::fmod(gaps, 2) == 0) {
-    for (const double odd : {gaps - 1, gaps + 1}) {
-      const double share = inner_mm / odd / pitch.wanted_mm;
-      if (odd >= least_gaps && std::abs(share - 1) <= kEvenSlack) {
-        gaps = odd;
+  const double all_mm = inner_mm + 2 * pitch.margin_mm;
+  const auto least = std::max(1.0, std::ceil((all_mm - pitch.wanted_mm) / pitch.widest_mm) + 1);
+  double count = std::max(std::round(all_mm / pitch.wanted_mm), least);
+  if (std::fmod(count, 2) == 1) {
+    for (const double even : {count - 1, count + 1}) {
+      const double share = all_mm / even / pitch.wanted_mm;
+      if (even >= least && std::abs(share - 1) <= kEvenSlack) {
+        count = even;
         break;
       }
     }
   }
-  return {low_mm + kWaveMm, inner_mm / gaps, static_cast<std::uint32_t>(gaps) + 1};
+  const double step_mm = all_mm / count;
+  return {low_mm + kWaveMm - pitch.margin_mm + step_mm / 2, step_mm,
+          static_cast<std::uint32_t>(count)};
 }
 
 Lattice::Lattice(const Polygon& region, const Pitch& pitch) : pitch_(pitch), edges_({region}) {
   const Box2 box = bounding_box({region});
-  x_ = fitted_axis(box.lower.x, box.upper.x, pitch);
-  y_ = fitted_axis(box.lower.y, box.upper.y, pitch);
+  x_ = axis_over(box.lower.x, box.upper.x, pitch);
+  y_ = axis_over(box.lower.y, box.upper.y, pitch);
   const double places = (x_.count + 2.0) * (y_.count + 2.0);
   if (!(places <= kMostPlaces))
     throw Error(ErrorKind::kBadInput, "eulerian: a region takes " +
@@ -100,8 +107,9 @@ void Lattice::find_rims() {
   const auto range = [&](double low, double high, const Axis& axis) {
     const double from = std::ceil((low - reach_mm - axis.first_mm) / axis.step_mm);
     const double to = std::floor((high + reach_mm - axis.first_mm) / axis.step_mm);
-    return std::pair(static_cast<std::uint32_t>(std::max(from, 0.0)),
-                     static_cast<std::uint32_t>(std::clamp(to + 1, 0.0, static_cast<double>(axis.count))));
+    return std::pair(
+        static_cast<std::uint32_t>(std::max(from, 0.0)),
+        static_cast<std::uint32_t>(std::clamp(to + 1, 0.0, static_cast<double>(axis.count))));
   };
   const auto look = [&](Point2 a, Point2 b, std::uint32_t ring, std::uint32_t edge) {
     const auto [left, right] = range(std::min(a.x, b.x), std::max(a.x, b.x), x_);
@@ -144,7 +152,7 @@ void Lattice::pull_in() {
   for (std::uint32_t node = first(); node < last(); ++node) {
     if (rim_of_[node] == kNone) continue;
     const double squared_mm = rims_[rim_of_[node]].squared_mm;
-    const double reach_mm = (has_[node] ? kPushOut : kPullIn) * pitch_mm;
+    const double reach_mm = has_[node] ? kPushOut * pitch_mm : pitch_.margin_mm;
     if (squared_mm <= reach_mm * reach_mm)
       (has_[node] ? inner : outer).push_back({squared_mm, node});
   }

@@ -19,6 +19,8 @@ inline constexpr std::uint32_t kNone = UINT32_MAX;
 struct Pitch {
   double wanted_mm;  ///< between neighbours
   double widest_mm;  ///< never more than this in a row or column; >= wanted_mm
+  double margin_mm;  ///< what lies so far outside the region is to be filled too; <= wanted_mm
+  bool fit;          ///< spread over each region evenly, or at multiples of the wanted distance
 };
 
 /// Evenly spaced coordinates.
@@ -30,9 +32,9 @@ struct Axis {
   [[nodiscard]] double at(std::uint32_t i) const noexcept { return first_mm + i * step_mm; }
 };
 
-/// Spreads coordinates from low to high: the first and the last on the ends, an even number of them
-/// if that costs no more than a tenth of the pitch. One in the middle if there is no room for two.
-[[nodiscard]] Axis fitted_axis(double low_mm, double high_mm, const Pitch& pitch);
+/// Spreads coordinates from low to high. Fitted, each has the same share of what is to be filled,
+/// and their number is even if that costs no more than a tenth of the pitch.
+[[nodiscard]] Axis axis_over(double low_mm, double high_mm, const Pitch& pitch);
 
 /// A lattice over one polygon. Nodes are numbered row by row with a frame of empty places round
 /// them, so that the neighbours of a node are node +- 1 and node +- stride().
