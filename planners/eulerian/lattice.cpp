@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "eulerian/polyline.hpp"
 #include "routebench/geometry/error.hpp"
 #include "routebench/geometry/grid.hpp"
 #include "routebench/geometry/region.hpp"
@@ -225,11 +226,11 @@ void Lattice::append_way(std::uint32_t a, std::uint32_t b, std::vector<Point2>& 
   const Point2 from = place(a), to = place(b);
   if (rim_of_[a] != kNone && rim_of_[b] != kNone && !edges_.covers(from, to)) {
     if (const auto path = along_wall(a, b)) {
-      points.insert(points.end(), path->begin() + 1, path->end());
+      for (const Point2 p : *path) append_straight(points, p);
       return;
     }
   }
-  points.push_back(to);
+  append_straight(points, to);
 }
 
 }  // namespace routebench::eulerian

@@ -161,15 +161,7 @@ class TreeWalk {
 
   [[nodiscard]] std::vector<Point2> polyline(const std::vector<std::uint32_t>& walk) const {
     std::vector<Point2> points{lattice_.place(walk.front())};
-    for (std::size_t i = 1; i < walk.size(); ++i) {
-      lattice_.append_way(walk[i - 1], walk[i], points);
-      // Points on a straight run say nothing.
-      while (points.size() >= 3) {
-        const Point2 a = points[points.size() - 3], b = points[points.size() - 2];
-        if (cross(b - a, points.back() - b) != 0 || dot(b - a, points.back() - b) <= 0) break;
-        points.erase(points.end() - 2);
-      }
-    }
+    for (std::size_t i = 1; i < walk.size(); ++i) lattice_.append_way(walk[i - 1], walk[i], points);
     return points;
   }
 

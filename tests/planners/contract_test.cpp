@@ -87,7 +87,10 @@ struct Faithful {
   ParamValue value;
 };
 const std::vector<Faithful>& faithful() {
-  static const std::vector<Faithful> all{};
+  static const std::vector<Faithful> all{
+      {"eulerian", "jump", std::string("extrude")},
+      {"eulerian", "variant", std::string("published")},
+  };
   return all;
 }
 
