@@ -21,7 +21,7 @@ using eulerian::Jump;
 using eulerian::Pairing;
 
 enum class Variant { kDefault, kPublished };
-enum class Graph { kTree, kGrid };
+enum class Graph { kTree, kMixed, kGrid };
 enum class Cells { kUniform, kQuadtree };
 enum class Prefer { kStraight, kFirst };
 
@@ -39,9 +39,10 @@ struct EulerianParams {
          "published stands for cells = quadtree, pairing = greedy, jump = extrude, prefer = first, "
          "whatever these say, with cells of a line's width over all that the outline touches, at "
          "any density: lays twice what is demanded, and leaves the region");
-    bind("graph", graph, {{"tree", Graph::kTree}, {"grid", Graph::kGrid}},
+    bind("graph", graph, {{"tree", Graph::kTree}, {"mixed", Graph::kMixed}, {"grid", Graph::kGrid}},
          "tree leads the stroke round a spanning tree, once over everything; grid walks every edge "
-         "between neighbouring cells");
+         "between neighbouring cells, which leaves holes at density 1; mixed: tree where it is "
+         "dense");
     bind("cells", cells, {{"uniform", Cells::kUniform}, {"quadtree", Cells::kQuadtree}},
          "quadtree, always a grid, has small cells at the outline only: dense rim, sparse centre");
     bind("pairing", pairing, {{"greedy", Pairing::kGreedy}, {"matching", Pairing::kMatching}},
@@ -93,7 +94,7 @@ class Eulerian final : public Planner {
     } else {
       for (const Polygon& region : offset(frame.polygons(), -context.line_width_mm / 2)) {
         stop_if_asked(context);
-        if (params_.cells == Cells::kUniform && params_.graph == Graph::kTree)
+        if (takes_tree(context))
           lay(round_tree(region, layer.index, context));
         else
           lay(over_grid(region, context));
@@ -105,6 +106,11 @@ class Eulerian final : public Planner {
 
  private:
   using Polylines = std::vector<std::vector<Point2>>;
+
+  [[nodiscard]] bool takes_tree(const PlanContext& context) const {
+    if (params_.cells == Cells::kQuadtree || params_.graph == Graph::kGrid) return false;
+    return params_.graph == Graph::kTree || context.density >= 1;
+  }
 
   [[nodiscard]] Polylines round_tree(const Polygon& region, int layer_index,
                                      const PlanContext& context) const {
