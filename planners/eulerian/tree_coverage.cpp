@@ -1,8 +1,10 @@
 #include "eulerian/tree_coverage.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <limits>
+#include <unordered_map>
 #include <utility>
 
 #include "eulerian/loops.hpp"
@@ -10,6 +12,9 @@
 
 namespace routebench::eulerian {
 namespace {
+
+// Chains of so many nodes are laid twice rather than alone.
+constexpr std::size_t kLongestSpur = 2;
 
 using Steps = std::array<std::uint32_t, 8>;
 
@@ -68,11 +73,12 @@ class TreeWalk {
 
   [[nodiscard]] TreeStrokes strokes() {
     TreeStrokes strokes;
+    for (const std::vector<std::uint32_t>& chain : chains())
+      if (!hang_up(chain) && chain.size() > 1) strokes.lines.push_back(polyline(chain));
     for (std::vector<std::uint32_t>& walk : loops_.walks()) {
       walk.push_back(walk.front());
-      strokes.loops.push_back(polyline(walk));
+      strokes.loops.push_back(polyline(spurs_.empty() ? walk : with_spurs(walk)));
     }
-    take_chains(strokes.lines);
     return strokes;
   }
 
@@ -165,40 +171,73 @@ class TreeWalk {
     return points;
   }
 
-  /// Lines along the nodes that no loop takes.
-  void take_chains(std::vector<std::vector<Point2>>& lines) {
+  /// The nodes that no loop takes, each in one chain: begun at the ends of chains where that can
+  /// be.
+  [[nodiscard]] std::vector<std::vector<std::uint32_t>> chains() const {
     std::vector<std::uint32_t> open;
     for_each_node([&](std::uint32_t node) {
       if (is_open(node)) open.push_back(node);
     });
     std::vector<bool> taken(open.empty() ? 0 : lattice_.size());
-    const auto next_of = [&](std::uint32_t node, std::size_t ahead) -> std::size_t {
-      for (std::size_t k = 0; k <= steps_.size(); ++k) {
-        const std::size_t way = k == 0 ? ahead : k - 1;
-        if (way == steps_.size()) continue;
-        const std::uint32_t other = node + steps_[way];
-        if (is_open(other) && !taken[other] && lattice_.joined(node, other)) return way;
-      }
-      return steps_.size();
+    const auto goes = [&](std::uint32_t node, std::uint32_t step) {
+      return is_open(node + step) && !taken[node + step] && lattice_.joined(node, node + step);
     };
-    const auto neighbours = [&](std::uint32_t node) {
-      int count = 0;
-      for (const std::uint32_t step : steps_)
-        if (is_open(node + step) && lattice_.joined(node, node + step)) ++count;
-      return count;
-    };
-    for (const int most_neighbours : {1, 8})
-      for (const std::uint32_t start : open) {
-        if (taken[start] || neighbours(start) > most_neighbours) continue;
-        std::vector<std::uint32_t> chain{start};
-        taken[start] = true;
-        for (std::size_t way = next_of(start, steps_.size()); way < steps_.size();
-             way = next_of(chain.back(), way)) {
-          chain.push_back(chain.back() + steps_[way]);
-          taken[chain.back()] = true;
+    std::vector<std::vector<std::uint32_t>> chains;
+    const auto follow = [&](std::uint32_t start) {
+      std::vector<std::uint32_t>& chain = chains.emplace_back(1, start);
+      taken[start] = true;
+      for (std::uint32_t ahead = 0;;) {
+        // Straight on, if that can be.
+        if (ahead == 0 || !goes(chain.back(), ahead)) {
+          const auto next = std::find_if(steps_.begin(), steps_.end(), [&](std::uint32_t step) {
+            return goes(chain.back(), step);
+          });
+          if (next == steps_.end()) return;
+          ahead = *next;
         }
-        if (chain.size() > 1) lines.push_back(polyline(chain));
+        chain.push_back(chain.back() + ahead);
+        taken[chain.back()] = true;
       }
+    };
+    for (const std::uint32_t node : open) {
+      const auto ways = std::count_if(steps_.begin(), steps_.end(),
+                                      [&](std::uint32_t step) { return goes(node, step); });
+      if (!taken[node] && ways <= 1) follow(node);
+    }
+    for (const std::uint32_t node : open)
+      if (!taken[node]) follow(node);
+    return chains;
+  }
+
+  /// Makes a short chain a spur of a loop that passes its end: there and back, as a doubled edge of
+  /// a tree is walked.
+  bool hang_up(std::vector<std::uint32_t> chain) {
+    if (chain.size() > kLongestSpur) return false;
+    for (int end = 0; end < 2; ++end) {
+      for (const std::uint32_t step : steps_) {
+        const std::uint32_t node = chain.front() + step;
+        if (!lattice_.has(node) || !loops_.holds(node) || spurs_.contains(node)) continue;
+        if (!lattice_.joined(node, chain.front())) continue;
+        spurs_.emplace(node, std::move(chain));
+        return true;
+      }
+      std::reverse(chain.begin(), chain.end());
+    }
+    return false;
+  }
+
+  [[nodiscard]] std::vector<std::uint32_t> with_spurs(
+      const std::vector<std::uint32_t>& walk) const {
+    std::vector<std::uint32_t> longer;
+    for (std::size_t i = 0; i < walk.size(); ++i) {
+      longer.push_back(walk[i]);
+      const auto spur = i > 0 ? spurs_.find(walk[i]) : spurs_.end();
+      if (spur == spurs_.end()) continue;
+      longer.insert(longer.end(), spur->second.begin(), spur->second.end());
+      longer.insert(longer.end(), spur->second.rbegin() + 1, spur->second.rend());
+      longer.push_back(walk[i]);
+    }
+    return longer;
   }
 
   const Lattice& lattice_;
@@ -206,6 +245,7 @@ class TreeWalk {
   Steps steps_;
   Loops loops_;
   std::vector<std::uint32_t> waiting_, woken_;
+  std::unordered_map<std::uint32_t, std::vector<std::uint32_t>> spurs_;  // by their node in a loop
 };
 
 }  // namespace

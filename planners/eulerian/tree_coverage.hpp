@@ -26,11 +26,12 @@ struct TreeStrokes {
 /// Four nodes make a cell. A spanning tree over the cells, each of its edges doubled, has an Euler
 /// circuit; led at half a cell's distance from the tree it passes all nodes of all cells once. It
 /// is built as it is walked: each cell is a loop of four nodes, and a tree edge joins two loops to
-/// one. Nodes beyond the cells are taken into a loop that passes by, two at a time or one; chains
-/// of nodes where no loop passes become lines.
+/// one. Nodes beyond the cells are taken into a loop that passes by, two at a time or one. Of
+/// chains of nodes that are left, where the region is too narrow for a loop, those of one or two
+/// nodes are walked there and back by the loop at their end; longer ones become lines.
 ///
-/// Returns as few loops as the lattice has connected parts, where cells hold them together. A node
-///         without any neighbour is left out.
+/// Returns one loop for each part of the lattice that cells hold together. A node without any
+///         neighbour is left out.
 /// Cost    near linear in places.
 /// Source  Y. Gabriely and E. Rimon, 2001, spanning-tree coverage; cells that the region cuts, and
 ///         following the wall, are our additions.
