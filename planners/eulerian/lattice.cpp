@@ -183,23 +183,43 @@ bool Lattice::is_free(std::uint32_t node, Point2 p) const {
 void Lattice::join() {
   for (std::uint32_t node = first(); node < last(); ++node) {
     if (!has_[node]) continue;
-    if (has_[node + 1] && has_way(node, node + 1)) joined_[node] |= kRight;
-    if (has_[node + stride_] && has_way(node, node + stride_)) joined_[node] |= kUp;
+    const Way right = find_way(node, node + 1), up = find_way(node, node + stride_);
+    if (right != Way::kBlocked) joined_[node] |= kRight;
+    if (right == Way::kBent) joined_[node] |= kRightBent;
+    if (up != Way::kBlocked) joined_[node] |= kUp;
+    if (up == Way::kBent) joined_[node] |= kUpBent;
   }
 }
 
-bool Lattice::has_way(std::uint32_t a, std::uint32_t b) const {
-  // What is farther from the boundary than a step has no wall within a step.
+bool Lattice::is_clear(std::uint32_t a, std::uint32_t b) const {
+  // Discs round both, up to the wall, that cover the way between; what has no rim is farther from
+  // the wall than a step.
   if (rim_of_[a] == kNone && rim_of_[b] == kNone) return true;
-  const Point2 from = place(a), to = place(b);
-  return edges_.covers(from, to) || along_wall(a, b);
+  const double reach_mm = std::max(x_.step_mm, y_.step_mm);
+  const auto clear_mm = [&](std::uint32_t node) {
+    if (rim_of_[node] == kNone) return reach_mm;
+    const Rim& rim = rims_[rim_of_[node]];
+    return rim.taken ? 0.0 : std::sqrt(rim.squared_mm);
+  };
+  constexpr double kRoundingMm = 1e-5;
+  return clear_mm(a) + clear_mm(b) > distance(place(a), place(b)) + kRoundingMm;
 }
 
-bool Lattice::joined(std::uint32_t a, std::uint32_t b) const {
+Lattice::Way Lattice::find_way(std::uint32_t a, std::uint32_t b) const {
+  if (!has_[a] || !has_[b]) return Way::kBlocked;
+  if (is_clear(a, b) || edges_.covers(place(a), place(b))) return Way::kStraight;
+  return along_wall(a, b) ? Way::kBent : Way::kBlocked;
+}
+
+Lattice::Way Lattice::way(std::uint32_t a, std::uint32_t b) const {
   const auto [low, high] = std::minmax(a, b);
-  if (high == low + 1) return joined_right(low);
-  if (high == low + stride_) return joined_up(low);
-  return has_[a] && has_[b] && has_way(a, b);
+  const auto remembered = [&](std::uint8_t joined, std::uint8_t bent) {
+    if ((joined_[low] & joined) == 0) return Way::kBlocked;
+    return (joined_[low] & bent) == 0 ? Way::kStraight : Way::kBent;
+  };
+  if (high == low + 1) return remembered(kRight, kRightBent);
+  if (high == low + stride_) return remembered(kUp, kUpBent);
+  return find_way(a, b);
 }
 
 std::optional<std::vector<Point2>> Lattice::along_wall(std::uint32_t a, std::uint32_t b) const {
@@ -223,14 +243,12 @@ std::optional<std::vector<Point2>> Lattice::along_wall(std::uint32_t a, std::uin
 }
 
 void Lattice::append_way(std::uint32_t a, std::uint32_t b, std::vector<Point2>& points) const {
-  const Point2 from = place(a), to = place(b);
-  if (rim_of_[a] != kNone && rim_of_[b] != kNone && !edges_.covers(from, to)) {
-    if (const auto path = along_wall(a, b)) {
-      for (const Point2 p : *path) append_straight(points, p);
-      return;
-    }
+  if (way(a, b) == Way::kBent) {
+    const auto path = along_wall(a, b);
+    for (const Point2 p : *path) append_straight(points, p);
+  } else {
+    append_straight(points, place(b));
   }
-  append_straight(points, to);
 }
 
 }  // namespace routebench::eulerian

@@ -69,14 +69,16 @@ class Lattice {
   /// The same for the one above it.
   [[nodiscard]] bool joined_up(std::uint32_t node) const { return (joined_[node] & kUp) != 0; }
   /// The same for any two nodes that are neighbours in a row, a column or a diagonal.
-  [[nodiscard]] bool joined(std::uint32_t a, std::uint32_t b) const;
+  [[nodiscard]] bool joined(std::uint32_t a, std::uint32_t b) const {
+    return way(a, b) != Way::kBlocked;
+  }
 
   /// Appends the way between two neighbours to a polyline that ends in the first one: straight, or
   /// along the wall where that stands in between. Takes   nodes that are joined.
   void append_way(std::uint32_t a, std::uint32_t b, std::vector<Point2>& points) const;
 
  private:
-  static constexpr std::uint8_t kRight = 1, kUp = 2;
+  static constexpr std::uint8_t kRight = 1, kUp = 2, kRightBent = 4, kUpBent = 8;
 
   /// A place of the boundary, as a node near it sees it.
   struct Rim {
@@ -96,7 +98,11 @@ class Lattice {
   void join();
   [[nodiscard]] bool is_free(std::uint32_t node, Point2 p) const;
   [[nodiscard]] Point2 lattice_place(std::uint32_t node) const;
-  [[nodiscard]] bool has_way(std::uint32_t a, std::uint32_t b) const;
+  /// True if no wall can stand between two neighbours, for they are far enough from all.
+  [[nodiscard]] bool is_clear(std::uint32_t a, std::uint32_t b) const;
+  enum class Way { kBlocked, kStraight, kBent };
+  [[nodiscard]] Way find_way(std::uint32_t a, std::uint32_t b) const;
+  [[nodiscard]] Way way(std::uint32_t a, std::uint32_t b) const;  ///< remembered if not diagonal
   /// Along the wall from one node to the other; nothing if both do not lie on one wall, or far.
   [[nodiscard]] std::optional<std::vector<Point2>> along_wall(std::uint32_t a,
                                                               std::uint32_t b) const;
