@@ -13,6 +13,7 @@
 #include "routebench/geometry/region.hpp"
 #include "routebench/planning/frame.hpp"
 #include "routebench/planning/plugin.hpp"
+#include "routebench/planning/walls.hpp"
 
 namespace {
 
@@ -23,6 +24,7 @@ using eulerian::Pairing;
 enum class Variant { kDefault, kPublished };
 enum class Graph { kTree, kMixed, kGrid };
 enum class Cells { kUniform, kQuadtree };
+enum class Thin { kFill, kDrop };
 enum class Prefer { kStraight, kFirst };
 
 struct EulerianParams {
@@ -33,6 +35,7 @@ struct EulerianParams {
   Jump jump = Jump::kTravel;
   double max_jump = 3;
   Prefer prefer = Prefer::kStraight;
+  Thin thin = Thin::kFill;
 
   void bind(ParamBinder& bind) {
     bind("variant", variant, {{"default", Variant::kDefault}, {"published", Variant::kPublished}},
@@ -54,6 +57,9 @@ struct EulerianParams {
     bind("max_jump", max_jump, {0, 1000}, "line distances", "longest jump that is rerouted");
     bind("prefer", prefer, {{"straight", Prefer::kStraight}, {"first", Prefer::kFirst}},
          "run straight on where that can be, or take the first edge that is free");
+    bind("thin", thin, {{"fill", Thin::kFill}, {"drop", Thin::kDrop}},
+         "at density 1, parts narrower than a line: one of their own width along the middle, or "
+         "nothing");
   }
 };
 
@@ -73,8 +79,11 @@ class Eulerian final : public Planner {
   using Params = EulerianParams;
 
   static PlannerInfo info() {
-    return {"eulerian", PlannerRole::kFill,
-            "Euler circuits: each connected part in one closed stroke", "S. Lei, 2015"};
+    return {"eulerian",
+            PlannerRole::kFill,
+            "Euler circuits: each connected part in one closed stroke",
+            "S. Lei, 2015",
+            {{"jump", "extrude"}, {"variant", "published"}}};
   }
 
   explicit Eulerian(const Params& params) : params_(resolved(params)) {}
@@ -92,13 +101,17 @@ class Eulerian final : public Planner {
                                     eulerian::LeafRule::kShape, context),
                frame.polygons(), context));
     } else {
-      for (const Polygon& region : offset(frame.polygons(), -context.line_width_mm / 2)) {
+      const Polygons regions = offset(frame.polygons(), -context.line_width_mm / 2);
+      for (const Polygon& region : regions) {
         stop_if_asked(context);
         if (takes_tree(context))
           lay(round_tree(region, layer.index, context));
         else
           lay(over_grid(region, context));
       }
+      if (params_.thin == Thin::kFill && context.density >= 1)
+        for (Stroke& stroke : gap_lines(frame.polygons(), {regions}, 1, context))
+          strokes.push_back(std::move(stroke));
     }
     return frame.from_frame(
         {eulerian::nearest_entry_first(std::move(strokes), frame.start(), context)});

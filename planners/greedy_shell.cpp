@@ -11,6 +11,7 @@
 #include "routebench/geometry/vec.hpp"
 #include "routebench/planning/frame.hpp"
 #include "routebench/planning/nearest_grid.hpp"
+#include "routebench/planning/ordering.hpp"
 #include "routebench/planning/plugin.hpp"
 #include "routebench/planning/walls.hpp"
 
@@ -23,6 +24,7 @@ enum class Chain { kGreedy, kLinear };
 enum class Seam { kNearest, kFixedPoint, kMinX };
 enum class Order { kInsideOut, kOutsideIn, kAny };
 enum class Thin { kDrop, kDouble };
+enum class Gaps { kFill, kLeave };
 
 struct ShellParams {
   SearchKind search = SearchKind::kGrid;
@@ -32,6 +34,7 @@ struct ShellParams {
   double seam_y_mm = 0;
   Order order = Order::kInsideOut;
   Thin thin = Thin::kDouble;
+  Gaps gaps = Gaps::kFill;
   bool small_twice = false;
 
   void bind(ParamBinder& bind) {
@@ -54,6 +57,9 @@ struct ShellParams {
     bind("thin", thin, {{"drop", Thin::kDrop}, {"double", Thin::kDouble}},
          "where the two sides of a wall come nearer than half a spacing: no wall, or there and "
          "back");
+    bind("gaps", gaps, {{"fill", Gaps::kFill}, {"leave", Gaps::kLeave}},
+         "parts and strips that are too narrow for a wall: a line of their own width along the "
+         "middle, or nothing");
     bind("small_twice", small_twice,
          "lay an island's innermost wall twice round if no further one would fit");
   }
@@ -244,20 +250,32 @@ void walk(const Pool& pool, Search search, const PlanContext& context, Point2& n
   }
 }
 
-/// Pools in the order in which they are laid, none of them empty.
-using Island = std::vector<Pool>;
+struct Island {
+  std::vector<Pool> pools;   ///< in the order in which they are laid, none of them empty
+  std::vector<Stroke> gaps;  ///< what is laid where no wall fits
 
-/// Always the island whose first pool has the nearest segment.
+  /// Where it may be begun. Not empty, as islands with nothing to lay are none.
+  [[nodiscard]] std::vector<Point2> entries() const {
+    if (!pools.empty()) return pools.front().points();
+    std::vector<Point2> ends;
+    for (const Stroke& stroke : gaps)
+      ends.insert(ends.end(), {stroke.points.front(), stroke.points.back()});
+    return ends;
+  }
+};
+
+/// Always the island with the nearest entry.
 class NearestIsland {
  public:
-  explicit NearestIsland(const std::vector<Island>& islands) : islands_(islands) {
+  explicit NearestIsland(const std::vector<Island>& islands) {
     std::vector<Point2> points;
     for (std::size_t i = 0; i < islands.size(); ++i) {
-      const std::vector<Point2>& starts = islands[i].front().points();
+      const std::vector<Point2> starts = islands[i].entries();
       first_.push_back(static_cast<std::uint32_t>(points.size()));
       points.insert(points.end(), starts.begin(), starts.end());
       owner_.resize(points.size(), i);
     }
+    first_.push_back(static_cast<std::uint32_t>(points.size()));
     grid_.emplace(std::move(points));
   }
 
@@ -265,20 +283,18 @@ class NearestIsland {
     const auto nearest = grid_->nearest(nozzle);
     if (!nearest) return std::nullopt;
     const std::size_t island = owner_[*nearest];
-    const std::uint32_t count = islands_[island].front().size();
-    for (std::uint32_t i = 0; i < count; ++i) grid_->remove(first_[island] + i);
+    for (std::uint32_t i = first_[island]; i < first_[island + 1]; ++i) grid_->remove(i);
     return island;
   }
 
  private:
-  const std::vector<Island>& islands_;
-  std::vector<std::uint32_t> first_;  // of an island's points in the grid
+  std::vector<std::uint32_t> first_;  // of an island's points in the grid; one more at the end
   std::vector<std::size_t> owner_;    // island of a point in the grid
   std::optional<NearestGrid> grid_;
 };
 
 Point2 leftmost(const Island& island) {
-  const std::vector<Point2>& points = island.front().points();
+  const std::vector<Point2> points = island.entries();
   return *std::min_element(points.begin(), points.end(), less_by_x);
 }
 
@@ -300,7 +316,11 @@ class GreedyShell final : public Planner {
     Route route;
     Point2 nozzle = frame.start();
     const auto lay_all = [&](const Island& island) {
-      for (const Pool& pool : island) lay(pool, context, nozzle, route);
+      for (const Pool& pool : island.pools) lay(pool, context, nozzle, route);
+      if (island.gaps.empty()) return;
+      for (Stroke& stroke : nearest_first(island.gaps, nozzle, context))
+        route.strokes.push_back(std::move(stroke));
+      nozzle = route.strokes.back().points.back();
     };
     if (params_.chain == Chain::kLinear) {
       std::stable_sort(islands.begin(), islands.end(), [](const Island& a, const Island& b) {
@@ -320,13 +340,17 @@ class GreedyShell final : public Planner {
     std::vector<Island> islands;
     for (const Polygon& polygon : polygons) {
       Island island = walls_of(polygon, context);
-      if (!island.empty()) islands.push_back(std::move(island));
+      if (!island.pools.empty() || !island.gaps.empty()) islands.push_back(std::move(island));
     }
     if (params_.order != Order::kAny || islands.empty()) return islands;
     Pool all;
-    for (const Island& island : islands)
-      for (const Pool& pool : island) all.add(pool);
-    return {{std::move(all)}};
+    Island whole;
+    for (const Island& island : islands) {
+      for (const Pool& pool : island.pools) all.add(pool);
+      whole.gaps.insert(whole.gaps.end(), island.gaps.begin(), island.gaps.end());
+    }
+    if (all.size() > 0) whole.pools.push_back(std::move(all));
+    return {std::move(whole)};
   }
 
   [[nodiscard]] Island walls_of(const Polygon& polygon, const PlanContext& context) const {
@@ -338,9 +362,11 @@ class GreedyShell final : public Planner {
           params_.small_twice && innermost && offset(region, -context.spacing_mm).empty();
       Pool pool;
       for (const Ring& ring : rings_of(wide_enough(region, context))) pool.add(ring, twice);
-      if (pool.size() > 0) island.push_back(std::move(pool));
+      if (pool.size() > 0) island.pools.push_back(std::move(pool));
     }
-    if (params_.order == Order::kInsideOut) std::reverse(island.begin(), island.end());
+    if (params_.order == Order::kInsideOut) std::reverse(island.pools.begin(), island.pools.end());
+    if (params_.gaps == Gaps::kFill)
+      island.gaps = gap_lines({polygon}, regions, context.perimeters, context);
     return island;
   }
 

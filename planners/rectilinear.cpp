@@ -11,6 +11,7 @@
 #include "routebench/planning/hatch.hpp"
 #include "routebench/planning/ordering.hpp"
 #include "routebench/planning/plugin.hpp"
+#include "routebench/planning/walls.hpp"
 
 namespace {
 
@@ -18,6 +19,9 @@ using namespace routebench;
 
 enum class Link { kNone, kFlows, kBoundary };
 enum class Ends { kInset, kAlong };
+enum class Sequence { kNearest, kZigzag };
+enum class Thin { kFill, kDrop };
+enum class Published { kNone, kDeKeyser, kSimpleSlicer };
 
 // Offsets wave by up to this where their outline is level (see region.hpp).
 constexpr double kWaveMm = 0.01;
@@ -26,6 +30,7 @@ constexpr double kWaveMm = 0.01;
 constexpr double kReach = 0.6;
 
 struct RectilinearParams {
+  Published published = Published::kNone;
   double angle_deg = 45;
   bool alternate = true;
   bool grid = false;
@@ -37,8 +42,15 @@ struct RectilinearParams {
   double max_link = 3;
   double min_length_mm = 0.02;
   bool trace = true;
+  Thin thin = Thin::kFill;
+  Sequence order = Sequence::kNearest;
 
   void bind(ParamBinder& bind) {
+    bind("published", published,
+         {{"none", Published::kNone},
+          {"dekeyser", Published::kDeKeyser},
+          {"simple_slicer", Published::kSimpleSlicer}},
+         "a paper's rules; they stand for all other parameters but search");
     bind("angle_deg", angle_deg, {-180, 180}, "deg", "direction of the lines, 0 along x");
     bind("alternate", alternate, "turn the direction by 90 degrees on odd layers");
     bind("grid", grid, "below density 1: both directions in each layer, at half the density each");
@@ -60,77 +72,129 @@ struct RectilinearParams {
     bind("max_link", max_link, {0, 100}, "line distances", "longest joint along the wall");
     bind("min_length_mm", min_length_mm, {0, 100}, "mm", "shorter lines are left out");
     bind("trace", trace, "at density 1: lay the stretches along the wall that no line comes near");
+    bind("thin", thin, {{"fill", Thin::kFill}, {"drop", Thin::kDrop}},
+         "at density 1, parts narrower than a line: one of their own width along the middle, or "
+         "nothing");
+    bind("order", order, {{"nearest", Sequence::kNearest}, {"zigzag", Sequence::kZigzag}},
+         "of the strokes: always the nearest, or line by line, every other one reversed");
   }
 };
+
+/// How the lines of one layer are laid: the parameters, or what a paper says.
+struct Rules {
+  RectilinearParams params;
+  double end_gap_mm = 0;
+  double min_length_mm = 0;
+  bool joints_may_leave = false;
+};
+
+Rules rules_of(const RectilinearParams& given, const Layer& layer, const PlanContext& context) {
+  if (given.published == Published::kNone)
+    return {given, given.end_gap * context.line_width_mm, given.min_length_mm, false};
+  RectilinearParams params;
+  params.search = given.search;
+  params.angle_deg = 0;
+  params.fit = false;
+  params.trace = false;
+  params.thin = Thin::kDrop;
+  params.ends = Ends::kAlong;
+  params.order = Sequence::kZigzag;
+  if (given.published == Published::kDeKeyser) {
+    params.grid = true;
+    params.link = Link::kNone;
+    return {params, 3 * layer.height_mm, 7 * layer.height_mm, false};
+  }
+  // Flows are closed only where the number of crossings changes: a joint may run over a hollow.
+  params.link = Link::kFlows;
+  return {params, context.line_width_mm, 0, true};
+}
+
+/// Turns every other stroke round, as one who lays line after line to and fro.
+std::vector<Stroke> to_and_fro(std::vector<Stroke> strokes) {
+  for (std::size_t i = 1; i < strokes.size(); i += 2)
+    std::reverse(strokes[i].points.begin(), strokes[i].points.end());
+  return strokes;
+}
 
 class Rectilinear final : public Planner {
  public:
   using Params = RectilinearParams;
 
   static PlannerInfo info() {
-    return {"rectilinear", PlannerRole::kFill, "parallel lines, joined along the wall or straight",
-            "K. De Keyser, 2016"};
+    return {"rectilinear",
+            PlannerRole::kFill,
+            "parallel lines, joined along the wall or straight",
+            "K. De Keyser, 2016",
+            {{"published", "simple_slicer"}}};
   }
 
   explicit Rectilinear(const Params& params) : params_(params) {}
 
   [[nodiscard]] Route plan(const Layer& layer, const PlanContext& context) const override {
     const Frame frame(layer, context);
-    const bool inset = params_.ends == Ends::kInset;
-    const Polygons regions =
-        inset ? offset(frame.polygons(), -context.line_width_mm / 2) : frame.polygons();
-    const double angle_deg =
-        params_.angle_deg + (params_.alternate && layer.index % 2 != 0 ? 90 : 0);
-    const bool both = params_.grid && context.density < 1;
+    const Rules rules = rules_of(params_, layer, context);
+    const RectilinearParams& params = rules.params;
+    const Polygons regions = params.ends == Ends::kInset
+                                 ? offset(frame.polygons(), -context.line_width_mm / 2)
+                                 : frame.polygons();
+    const double angle_deg = params.angle_deg + (params.alternate && layer.index % 2 != 0 ? 90 : 0);
+    const bool both = params.grid && context.density < 1;
     std::vector<Stroke> strokes;
     for (const Polygon& region : regions) {
-      fill(region, angle_deg, both ? 2 : 1, context, strokes);
-      if (both) fill(region, angle_deg + 90, 2, context, strokes);
+      fill(region, rules, angle_deg, both ? 2 : 1, context, strokes);
+      if (both) fill(region, rules, angle_deg + 90, 2, context, strokes);
     }
-    return frame.from_frame({nearest_first(std::move(strokes), frame.start(), context)});
+    if (params.thin == Thin::kFill && params.ends == Ends::kInset && context.density >= 1)
+      for (Stroke& stroke : gap_lines(frame.polygons(), {regions}, 1, context))
+        strokes.push_back(std::move(stroke));
+    return frame.from_frame({params.order == Sequence::kZigzag
+                                 ? to_and_fro(std::move(strokes))
+                                 : nearest_first(std::move(strokes), frame.start(), context)});
   }
 
  private:
   /// Lays one direction in one region, its lines `sparser` times farther apart than demanded.
-  void fill(const Polygon& region, double angle_deg, int sparser, const PlanContext& context,
-            std::vector<Stroke>& strokes) const {
+  static void fill(const Polygon& region, const Rules& rules, double angle_deg, int sparser,
+                   const PlanContext& context, std::vector<Stroke>& strokes) {
     stop_if_asked(context);
+    const RectilinearParams& params = rules.params;
     const double distance_mm = context.line_distance_mm() * sparser;
     HatchRule rule;
     rule.angle_deg = angle_deg;
-    rule.lines = lines_over(region, angle_deg, distance_mm, context);
-    rule.search = params_.search;
-    rule.min_length_mm = params_.min_length_mm;
-    if (params_.ends == Ends::kAlong) rule.end_gap_mm = params_.end_gap * context.line_width_mm;
+    rule.lines = lines_over(region, params, angle_deg, distance_mm, context);
+    rule.search = params.search;
+    rule.min_length_mm = rules.min_length_mm;
+    if (params.ends == Ends::kAlong) rule.end_gap_mm = rules.end_gap_mm;
     const Hatch hatch(region, rule);
-    const std::vector<Joint> joints = joints_of(hatch, region, distance_mm);
+    const std::vector<Joint> joints = joints_of(hatch, region, rules, distance_mm);
     const auto lay = [&](std::vector<std::vector<Point2>> polylines) {
       for (std::vector<Point2>& points : polylines)
         strokes.push_back({std::move(points), context.line_width_mm});
     };
     lay(joined_lines(hatch, joints));
-    if (params_.trace && params_.ends == Ends::kInset && context.density >= 1)
+    if (params.trace && params.ends == Ends::kInset && context.density >= 1)
       lay(bare_boundary(hatch, joints, kReach * context.spacing_mm, context.line_width_mm,
                         context));
   }
 
-  [[nodiscard]] std::vector<Joint> joints_of(const Hatch& hatch, const Polygon& region,
-                                             double distance_mm) const {
-    if (params_.link == Link::kNone) return {};
-    if (params_.link == Link::kFlows || params_.ends == Ends::kAlong)
-      return join_flows(hatch, region);
-    return join_along_boundary(hatch, params_.max_link * distance_mm);
+  static std::vector<Joint> joints_of(const Hatch& hatch, const Polygon& region, const Rules& rules,
+                                      double distance_mm) {
+    const RectilinearParams& params = rules.params;
+    if (params.link == Link::kNone) return {};
+    if (params.link == Link::kFlows || params.ends == Ends::kAlong)
+      return join_flows(hatch, rules.joints_may_leave ? nullptr : &region);
+    return join_along_boundary(hatch, params.max_link * distance_mm);
   }
 
-  [[nodiscard]] EvenLines lines_over(const Polygon& region, double angle_deg, double distance_mm,
-                                     const PlanContext& context) const {
+  static EvenLines lines_over(const Polygon& region, const RectilinearParams& params,
+                              double angle_deg, double distance_mm, const PlanContext& context) {
     const Turn turn(angle_deg);
     double low = turn.to_level(region.outer.front()).y, high = low;
     for (const Point2 p : region.outer) {
       low = std::min(low, turn.to_level(p).y);
       high = std::max(high, turn.to_level(p).y);
     }
-    if (params_.fit && params_.ends == Ends::kInset && context.density >= 1)
+    if (params.fit && params.ends == Ends::kInset && context.density >= 1)
       return fitted_lines(low, high, context);
     // Multiples of the distance, so that lines of one layer lie over those of another.
     const double first = std::ceil(low / distance_mm);

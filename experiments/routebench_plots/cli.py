@@ -76,7 +76,9 @@ def _run(arguments: Sequence[str] | None) -> list[Path]:
         names = options.metrics.split(",") if options.metrics else None
         metrics = chosen_metrics(results, names)
         with _staging(out) as folder, _progress() as report:
-            written = draw_all(results, metrics, folder, formats, report)
+            written = draw_all(
+                results, metrics, folder, formats, report, options.baseline
+            )
             _publish(folder, out, written)
     return [out / name for name in written]
 
@@ -87,6 +89,7 @@ def _parse(arguments: Sequence[str] | None) -> argparse.Namespace:
     parser.add_argument("--out", type=Path)
     parser.add_argument("--formats", default=_DEFAULT_FORMATS)
     parser.add_argument("--metrics")
+    parser.add_argument("--baseline")
     return parser.parse_args(arguments)
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
-from . import bars, curves, outcomes, routes, scatter, tables
+from . import bars, curves, outcomes, routes, scatter, summary, tables
 from .errors import PlotError
 from .naming import file_slugs
 from .quantities import in_sentence
@@ -102,12 +102,14 @@ def draw_all(
     folder: Path,
     formats: Sequence[str],
     report: Callable[[int, int], None],
+    baseline: str | None = None,
 ) -> list[str]:
     """Writes all figures and tables; returns file names in that order.
 
     Equal databases make equal bytes. `report` hears after each figure how
     many are done, and of how many.
     """
+    compared = summary.summary(results, baseline)
     written = []
     with applied():
         planned = list(figures(results, metrics))
@@ -117,6 +119,7 @@ def draw_all(
             report(done, len(planned))
     made = tables.tables(results, metrics)
     for name, text in (
+        ("summary.md", summary.to_markdown(compared, results.experiment)),
         (
             "table.md",
             tables.to_markdown(made, f"Totals of {results.experiment}"),

@@ -76,14 +76,14 @@ def tables(results: Results, metrics: Sequence[Metric]) -> list[Table]:
 def to_markdown(made: Sequence[Table], title: str) -> str:
     """All tables as one Markdown page."""
     lines = [
-        f"# {_markdown(title)}",
+        f"# {markdown_text(title)}",
         "",
         "Totals of every cell. The arrow points to what is better, the best "
         "of a model is bold; only valid cells are ranked.",
     ]
     for table in made:
         if table.setting:
-            lines += ["", f"## {_markdown(table.setting)}"]
+            lines += ["", f"## {markdown_text(table.setting)}"]
         heads = [
             "#",
             "contender",
@@ -91,14 +91,14 @@ def to_markdown(made: Sequence[Table], title: str) -> str:
             "outcome",
         ]
         for block in table.blocks:
-            lines += ["", f"### {_markdown(block.model)}", ""]
-            lines.append(_markdown_row([_markdown(head) for head in heads]))
+            lines += ["", f"### {markdown_text(block.model)}", ""]
+            lines.append(markdown_row([markdown_text(head) for head in heads]))
             lines.append(
-                _markdown_row(
+                markdown_row(
                     ["--:", ":--", *("--:" for _ in table.heads), ":--"]
                 )
             )
-            lines += [_markdown_row(_markdown_cells(r)) for r in block.rows]
+            lines += [markdown_row(_markdown_cells(r)) for r in block.rows]
     return "\n".join(lines) + "\n"
 
 
@@ -249,7 +249,8 @@ def _outcome(slot: Slot) -> str:
     )
 
 
-def _markdown_row(cells: Sequence[str]) -> str:
+def markdown_row(cells: Sequence[str]) -> str:
+    """A row of a Markdown table, of cells that are Markdown already."""
     return f"| {' | '.join(cells)} |"
 
 
@@ -257,13 +258,13 @@ def _markdown_cells(row: Row) -> list[str]:
     outcome = f"{row.outcome}: {row.reason}" if row.reason else row.outcome
     return [
         "–" if row.rank is None else str(row.rank),
-        _markdown(row.contender),
+        markdown_text(row.contender),
         *(f"**{n.text}**" if n.best else n.text for n in row.numbers),
-        _markdown(outcome),
+        markdown_text(outcome),
     ]
 
 
-def _markdown(text: str) -> str:
+def markdown_text(text: str) -> str:
     """Text in which no character is markup, on one line."""
     return re.sub(r"([\\`*_{}\[\]<>#|~])", r"\\\1", " ".join(text.split()))
 

@@ -126,7 +126,6 @@ RunOptions read_run(const ConfigTable& top, const std::string& file) {
 
 /// A table whose keys and values go through a text interface: [task] and [printer].
 struct BoundTable {
-  const char* title;
   std::vector<KeyValue> defaults;
   std::function<void(Setting&, const std::string& key, const std::string& value)> set;
 };
@@ -138,21 +137,20 @@ bool is_number(const std::string& text) {
   return error == std::errc{} && end == text.data() + text.size();
 }
 
-/// The axes of a bound table; checks that numbers are given for numbers and texts for texts.
-std::vector<Axis> bound_axes(const ConfigTable& top, const char* key, const BoundTable& bound,
-                             const std::string& file) {
-  std::vector<Axis> axes;
-  const std::optional<ConfigEntry> entry = top.find(key);
-  if (!entry) return axes;
-  const ConfigTable table(file, bound.title, entry->table(bound.title));
+/// The axes of a bound table; checks that numbers are given for numbers and texts for texts. The
+/// table may have a `name`, too, if it is `named`.
+std::vector<Axis> bound_axes(const ConfigTable& table, const BoundTable& bound, bool named) {
   std::map<std::string, std::string> defaults;
   std::vector<std::string> known;
   for (const KeyValue& pair : bound.defaults) {
     defaults[pair.key] = pair.value;
     known.push_back(pair.key);
   }
+  if (named) known.emplace_back("name");
   table.require_known(known);
+  std::vector<Axis> axes;
   for (const ConfigEntry& found : table.entries()) {
+    if (named && found.key == "name") continue;
     const std::string& standard = defaults[found.key];
     const bool pair = standard.find(',') != std::string::npos;
     axes.push_back(axis_of(found, found.key, pair ? ValueShape::kPair : ValueShape::kSingle));
@@ -165,45 +163,78 @@ std::vector<Axis> bound_axes(const ConfigTable& top, const char* key, const Boun
   return axes;
 }
 
+/// One [task], or one of several [[task]] with a name each.
+struct TaskTable {
+  std::string name;
+  std::vector<Axis> axes;
+};
+
+std::vector<TaskTable> read_tasks(const ConfigTable& top, const BoundTable& bound,
+                                  const std::string& file) {
+  const std::optional<ConfigEntry> entry = top.find("task");
+  if (!entry) return {{}};
+  if (!entry->node->is_array_of_tables())
+    return {{"", bound_axes({file, "[task]", entry->table("[task]")}, bound, false)}};
+  std::vector<TaskTable> tasks;
+  std::map<std::string, std::string> places;
+  for (const toml::node& node : *entry->node->as_array()) {
+    const ConfigTable table(file, "[[task]]", *node.as_table());
+    const ConfigEntry name = table.at("name");
+    if (name.text().empty()) name.refuse("must not be empty");
+    const auto [taken, is_new] = places.emplace(name.text(), name.place);
+    if (!is_new)
+      name.refuse("the name " + taken->first + " is taken by the task at " + taken->second);
+    tasks.push_back({name.text(), bound_axes(table, bound, true)});
+  }
+  return tasks;
+}
+
 /// Checks what task keys ask of each other.
 void require_consistent(const Setting& setting, const ConfigTable& top) {
   try {
     check_task(setting.task);
   } catch (const Error& error) {
-    // The defaults agree with each other, so there is a [task] to blame.
+    // The defaults agree with each other, so there is a task to blame.
     top.at("task").refuse(error.what());
   }
 }
 
 std::vector<Setting> read_settings(const ConfigTable& top, const std::string& file) {
-  const std::vector<BoundTable> tables{
-      {"[task]", task_values(Task{}),
-       [](Setting& setting, const std::string& key, const std::string& value) {
-         set_task_value(setting.task, key, value);
-       }},
-      {"[printer]", printer_values(Printer{}),
-       [](Setting& setting, const std::string& key, const std::string& value) {
-         set_printer_value(setting.printer, key, value);
-       }}};
-  std::vector<Axis> axes = bound_axes(top, "task", tables[0], file);
-  const std::size_t task_axes = axes.size();
-  for (Axis& axis : bound_axes(top, "printer", tables[1], file)) axes.push_back(std::move(axis));
+  const BoundTable bound_task{
+      task_values(Task{}), [](Setting& setting, const std::string& key, const std::string& value) {
+        set_task_value(setting.task, key, value);
+      }};
+  const BoundTable bound_printer{
+      printer_values(Printer{}),
+      [](Setting& setting, const std::string& key, const std::string& value) {
+        set_printer_value(setting.printer, key, value);
+      }};
+  std::vector<Axis> printer_axes;
+  if (const std::optional<ConfigEntry> entry = top.find("printer"))
+    printer_axes = bound_axes({file, "[printer]", entry->table("[printer]")}, bound_printer, false);
 
   std::vector<Setting> settings;
-  for_each_combination(axes, [&](const Combination& combination) {
-    Setting setting;
-    setting.label = sweep_label(axes, combination);
-    for (std::size_t i = 0; i < axes.size(); ++i) {
-      const ConfigEntry& point = axes[i].points[combination[i]];
-      try {
-        tables[i < task_axes ? 0 : 1].set(setting, point.key, value_text(point));
-      } catch (const Error& error) {
-        point.refuse(error.what());
+  for (TaskTable& task : read_tasks(top, bound_task, file)) {
+    std::vector<Axis>& axes = task.axes;
+    const std::size_t task_axes = axes.size();
+    axes.insert(axes.end(), printer_axes.begin(), printer_axes.end());
+    for_each_combination(axes, [&](const Combination& combination) {
+      Setting setting;
+      setting.label = sweep_label(axes, combination);
+      if (!task.name.empty())
+        setting.label = task.name + (setting.label.empty() ? "" : ", " + setting.label);
+      for (std::size_t i = 0; i < axes.size(); ++i) {
+        const ConfigEntry& point = axes[i].points[combination[i]];
+        try {
+          (i < task_axes ? bound_task : bound_printer).set(setting, point.key, value_text(point));
+        } catch (const Error& error) {
+          point.refuse(error.what());
+        }
       }
-    }
-    require_consistent(setting, top);
-    settings.push_back(std::move(setting));
-  });
+      require_consistent(setting, top);
+      settings.push_back(std::move(setting));
+    });
+  }
   return settings;
 }
 

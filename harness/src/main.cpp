@@ -84,6 +84,8 @@ int main(int argc, char** argv) {
   routebench::add_plan_command(app, exit_code);
   routebench::add_slice_command(app, exit_code);
   routebench::add_planners_command(app, exit_code);
+  routebench::add_check_planner_command(app, exit_code);
+  routebench::add_new_planner_command(app, exit_code);
   routebench::add_plot_command(app, exit_code);
   routebench::add_export_command(app, exit_code);
   routebench::add_doctor_command(app, exit_code);

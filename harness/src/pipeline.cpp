@@ -36,6 +36,20 @@ void require_task_height(const std::string& file, const std::vector<Layer>& laye
   }
 }
 
+/// Sets Layer::solid by the task's rules. Only layers that were cut from a mesh have one.
+void mark_solid(std::vector<Layer>& layers, const Task& task, const Mesh* mesh,
+                const ParallelFor& parallel_for) {
+  std::vector<bool> dense(layers.size(), false);
+  if (task.skin_rule == SkinRule::kDifference)
+    find_solid(layers, task.skin_layers, parallel_for);
+  else
+    dense = layers_with_flat_facets(
+        *mesh, task.skin_rule == SkinRule::kSlope ? FlatRule::kSlope : FlatRule::kNear,
+        task.layer_height_mm, layers.size());
+  for (std::size_t i = 0; i < layers.size(); ++i)
+    if (dense[i] || layers[i].z_mm < task.base_mm) layers[i].solid = layers[i].polygons;
+}
+
 SlicedModel slice_mesh_model(const std::string& spec, const Task& task,
                              const SliceModelOptions& options, const ParallelFor& parallel_for) {
   Model model = load_model(spec, {.repair = options.repair});
@@ -51,14 +65,20 @@ SlicedModel slice_mesh_model(const std::string& spec, const Task& task,
                          slices.report.warnings.end());
   sliced.report = std::move(slices.report);
   sliced.layers = std::move(slices.layers);
+  if (options.find_skins) mark_solid(sliced.layers, task, &model.mesh, parallel_for);
   return sliced;
 }
 
-SlicedModel read_layer_file(const std::string& spec, const Task& task) {
+SlicedModel read_layer_file(const std::string& spec, const Task& task,
+                            const SliceModelOptions& options, const ParallelFor& parallel_for) {
+  if (options.find_skins && task.skin_rule != SkinRule::kDifference)
+    throw Error(ErrorKind::kBadInput,
+                spec + ": a file of layers has no facets; skin_rule must be difference");
   SlicedModel sliced;
   sliced.layers = read_wkt(spec, task.layer_height_mm);
   require_task_height(spec, sliced.layers, task);
   for (const Layer& layer : sliced.layers) sliced.report.repaired_layers += layer.repaired ? 1 : 0;
+  if (options.find_skins) mark_solid(sliced.layers, task, nullptr, parallel_for);
   return sliced;
 }
 
@@ -93,11 +113,10 @@ void require_all_loaded(const PlannerSet& planners) {
 
 SlicedModel slice_model(const std::string& spec, const Task& task, const SliceModelOptions& options,
                         const ParallelFor& parallel_for) {
-  SlicedModel sliced = is_layer_file(spec) ? read_layer_file(spec, task)
+  SlicedModel sliced = is_layer_file(spec) ? read_layer_file(spec, task, options, parallel_for)
                                            : slice_mesh_model(spec, task, options, parallel_for);
   sliced.spec = spec;
   sliced.origin = lower_corner(sliced.layers);
-  if (options.find_skins) find_solid(sliced.layers, task.skin_layers, parallel_for);
   return sliced;
 }
 

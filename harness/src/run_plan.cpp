@@ -14,15 +14,16 @@ namespace routebench {
 namespace {
 
 /// The task keys that decide how a model is cut into layers and regions.
-using Shape = std::tuple<double, int, double, int, double>;
+using Shape = std::tuple<double, int, SkinRule, double, double, int, double>;
 
 Shape shape_of(const Task& task) {
-  return {task.layer_height_mm, task.skin_layers, task.line_width_mm, task.perimeters,
-          task.density};
+  return {task.layer_height_mm, task.skin_layers, task.skin_rule, task.base_mm,
+          task.line_width_mm,   task.perimeters,  task.density};
 }
 
 bool sliced_alike(const Task& a, const Task& b) {
-  return a.layer_height_mm == b.layer_height_mm && a.skin_layers == b.skin_layers;
+  return a.layer_height_mm == b.layer_height_mm && a.skin_layers == b.skin_layers &&
+         a.skin_rule == b.skin_rule && a.base_mm == b.base_mm;
 }
 
 std::string hex(std::uint64_t value) {

@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <system_error>
+#include <type_traits>
 #include <utility>
 
 #include "routebench/geometry/error.hpp"
@@ -34,8 +35,11 @@ template <>
 struct Rule<Point2> {
   double furthest_mm;
 };
-template <>
-struct Rule<RetractPolicy> {};
+template <typename Enum>
+requires std::is_enum_v<Enum>
+struct Rule<Enum> {
+  std::span<const std::pair<std::string_view, Enum>> choices;
+};
 template <>
 struct Rule<std::string> {
   std::span<const std::string_view> choices;
@@ -45,6 +49,12 @@ constexpr std::array<std::pair<std::string_view, RetractPolicy>, 3> kPolicies{{
     {"length", RetractPolicy::kLength},
     {"length_and_crossing", RetractPolicy::kLengthAndCrossing},
     {"manhattan", RetractPolicy::kManhattan},
+}};
+
+constexpr std::array<std::pair<std::string_view, SkinRule>, 3> kSkinRules{{
+    {"difference", SkinRule::kDifference},
+    {"slope", SkinRule::kSlope},
+    {"near", SkinRule::kNear},
 }};
 
 constexpr std::array<std::string_view, 1> kFlavours{"marlin"};
@@ -59,6 +69,8 @@ void visit_keys_of_task(AnyTask& task, Visit&& visit) {
   visit("perimeters", task.perimeters, Rule<int>{0, 10000});
   visit("density", task.density, Rule<double>{0, 1, ""});
   visit("skin_layers", task.skin_layers, Rule<int>{0, 100000});
+  visit("skin_rule", task.skin_rule, Rule<SkinRule>{kSkinRules});
+  visit("base_mm", task.base_mm, Rule<double>{0, 100000, "mm"});
   visit("join_mm", task.join_mm, Rule<double>{0, 10, "mm"});
   visit("start_mm", task.start_mm, Rule<Point2>{100000});
   visit("gate_covered_min", task.gate.covered_min, Rule<double>{0, 1, ""});
@@ -74,7 +86,7 @@ void visit_keys_of_task(AnyTask& task, Visit&& visit) {
 
 template <typename AnyPrinter, typename Visit>
 void visit_keys_of_printer(AnyPrinter& printer, Visit&& visit) {
-  visit("retract_policy", printer.retract_policy, Rule<RetractPolicy>{});
+  visit("retract_policy", printer.retract_policy, Rule<RetractPolicy>{kPolicies});
   visit("retract_over_mm", printer.retract_over_mm, Rule<double>{0, 100000, "mm"});
   visit("retract_mm", printer.retract_mm, Rule<double>{0, 1000, "mm"});
   visit("retract_mm_s", printer.retract_mm_s, Rule<double>{0.01, 100000, "mm/s"});
@@ -95,10 +107,17 @@ std::string text_of(double value) {
 std::string text_of(int value) { return std::to_string(value); }
 std::string text_of(const std::string& value) { return value; }
 std::string text_of(Point2 value) { return text_of(value.x) + "," + text_of(value.y); }
-std::string text_of(RetractPolicy value) {
-  for (const auto& [name, policy] : kPolicies)
-    if (policy == value) return std::string(name);
-  throw Error(ErrorKind::kInternal, "a retraction policy without a name");
+
+/// As text, by the rule where that has the names.
+template <typename Value>
+std::string text_of(const Value& value, const Rule<Value>& rule) {
+  if constexpr (std::is_enum_v<Value>) {
+    for (const auto& [name, choice] : rule.choices)
+      if (choice == value) return std::string(name);
+    throw Error(ErrorKind::kInternal, "a choice without a name");
+  } else {
+    return text_of(value);
+  }
 }
 
 std::string_view trimmed(std::string_view text) {
@@ -175,11 +194,13 @@ class Setter {
     member = {*x + 0.0, *y + 0.0};
   }
 
-  void assign(RetractPolicy& member, const Rule<RetractPolicy>&) const {
+  template <typename Enum>
+  requires std::is_enum_v<Enum>
+  void assign(Enum& member, const Rule<Enum>& rule) const {
     std::vector<std::string> names;
-    for (const auto& [name, policy] : kPolicies) {
+    for (const auto& [name, value] : rule.choices) {
       if (name == text_) {
-        member = policy;
+        member = value;
         return;
       }
       names.emplace_back(name);
@@ -221,8 +242,8 @@ class Setter {
 
 /// Puts keys with their values into a list.
 auto lister(std::vector<KeyValue>& list) {
-  return [&list](std::string_view name, const auto& member, const auto&) {
-    list.push_back({std::string(name), text_of(member)});
+  return [&list](std::string_view name, const auto& member, const auto& rule) {
+    list.push_back({std::string(name), text_of(member, rule)});
   };
 }
 

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <numeric>
+#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -47,8 +48,9 @@ struct Candidate {
 
 }  // namespace
 
-std::vector<Joint> join_flows(const Hatch& hatch, const Polygon& region) {
-  const EdgeGrid edges({region});
+std::vector<Joint> join_flows(const Hatch& hatch, const Polygon* region) {
+  std::optional<EdgeGrid> edges;
+  if (region != nullptr) edges.emplace(Polygons{*region});
   std::vector<Joint> joints;
   std::vector<bool> first_is_open;  // of the flows that reach the line below: the end that is free
   for (std::uint32_t line = 0; line + 1 < hatch.lines(); ++line) {
@@ -64,7 +66,7 @@ std::vector<Joint> join_flows(const Hatch& hatch, const Polygon& region) {
       const std::size_t side = first_is_open[k] ? 0 : 1;
       const std::size_t from = 2 * (below + k) + side, to = 2 * (above + k) + side;
       const Point2 a = hatch.ends()[from].point, b = hatch.ends()[to].point;
-      const bool joined = edges.covers(a, b);
+      const bool joined = !edges || edges->covers(a, b);
       if (joined) joints.push_back({from, to, {a, b}});
       first_is_open[k] = joined && !first_is_open[k];
     }

@@ -51,7 +51,7 @@ class FilesTest(PlotTestCase):
         self.assertEqual((code, errors), (0, ""))
         place = self.folder / "plots"
         names = [Path(line).name for line in lines]
-        self.assertEqual([Path(line).parent for line in lines], [place] * 14)
+        self.assertEqual([Path(line).parent for line in lines], [place] * len(names))
         self.assertEqual(
             names,
             [
@@ -66,7 +66,7 @@ class FilesTest(PlotTestCase):
                 )
                 for ending in ("png", "svg")
             ]
-            + ["table.md", "table.tex"],
+            + ["summary.md", "table.md", "table.tex"],
         )
         for name in names:
             self.assertGreater((place / name).stat().st_size, 0, name)

@@ -136,5 +136,33 @@ TEST(FindSolid, TheLoopThatRunsItDoesNotMatter) {
   EXPECT_EQ(forth, back);
 }
 
+std::vector<std::size_t> places(const std::vector<bool>& marks) {
+  std::vector<std::size_t> set;
+  for (std::size_t i = 0; i < marks.size(); ++i)
+    if (marks[i]) set.push_back(i);
+  return set;
+}
+
+TEST(FlatFacets, MarkTheLayersAboutTheEndsOfABox) {
+  // Planes at 0.1, 0.3, ... 3.9 mm; walls rise by 4 mm over 10.
+  const Mesh box = test::prism(test::rectangle(0, 0, 10, 10), 0, 4);
+  EXPECT_EQ(places(layers_with_flat_facets(box, FlatRule::kSlope, 0.2, 20)),
+            (std::vector<std::size_t>{0, 1, 18, 19}));
+  EXPECT_EQ(places(layers_with_flat_facets(box, FlatRule::kNear, 0.2, 20)),
+            (std::vector<std::size_t>{0, 1, 2, 3, 16, 17, 18, 19}));
+}
+
+TEST(FlatFacets, AreThoseThatRiseByLessThanAFifth) {
+  const auto ramp = [](double rise_mm) {
+    return Mesh{{{0, 0, 3}, {10, 0, 3}, {0, 6, 3 + rise_mm}}, {{0, 1, 2}}};
+  };
+  // The first plane at or above 3 mm is the third one at 3.5 mm.
+  EXPECT_EQ(places(layers_with_flat_facets(ramp(1.99), FlatRule::kSlope, 1, 10)),
+            (std::vector<std::size_t>{1, 2, 3, 4}));
+  EXPECT_TRUE(places(layers_with_flat_facets(ramp(2), FlatRule::kSlope, 1, 10)).empty());
+  EXPECT_FALSE(places(layers_with_flat_facets(ramp(0.09), FlatRule::kNear, 1, 10)).empty());
+  EXPECT_TRUE(places(layers_with_flat_facets(ramp(0.11), FlatRule::kNear, 1, 10)).empty());
+}
+
 }  // namespace
 }  // namespace routebench

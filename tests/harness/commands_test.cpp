@@ -20,8 +20,8 @@ class Program : public test::ProgramTest {};
 TEST_F(Program, HelpIsThereForEveryCommand) {
   const ProgramRun help = call({"--help"});
   EXPECT_EQ(help.exit_code, 0);
-  for (const std::string command :
-       {"run", "plan", "slice", "planners", "plot", "export", "doctor"}) {
+  for (const std::string command : {"run", "plan", "slice", "planners", "check-planner",
+                                    "new-planner", "plot", "export", "doctor"}) {
     EXPECT_NE(help.out.find("\n  " + command + " "), help.out.npos) << command;
     const ProgramRun own = call({command, "--help"});
     EXPECT_EQ(own.exit_code, 0) << command;

@@ -208,6 +208,21 @@ TEST(Config, TaskAndPrinterMultiplyToSettingsAndSeedsStandBeside) {
   EXPECT_EQ(config.cell_count(), 2u * 1 * 4 * 2);
 }
 
+TEST(Config, SeveralTasksHaveNamesAndSweepsOfTheirOwn) {
+  const ExperimentConfig config = parsed(std::string(kHead) + kContender +
+                                         "[[task]]\nname = \"walls\"\ndensity = 0\n"
+                                         "[[task]]\nname = \"inside\"\ndensity = [0.2, 1]\n"
+                                         "[printer]\nretract_over_mm = [1, 2]\n");
+  EXPECT_EQ(setting_labels(config),
+            (std::vector<std::string>{
+                "walls, retract_over_mm=1", "walls, retract_over_mm=2",
+                "inside, density=0.2, retract_over_mm=1", "inside, density=0.2, retract_over_mm=2",
+                "inside, density=1, retract_over_mm=1", "inside, density=1, retract_over_mm=2"}));
+  EXPECT_EQ(config.settings[1].task.density, 0);
+  EXPECT_EQ(config.settings[5].task.density, 1);
+  EXPECT_EQ(config.settings[5].printer.retract_over_mm, 2);
+}
+
 TEST(Config, APairIsAValueAndAListOfPairsAnAxis) {
   const auto with_start = [](const std::string& start) {
     return parsed(kHead + ("[task]\nstart_mm = " + start + "\n") + kContender);
@@ -307,6 +322,12 @@ INSTANTIATE_TEST_SUITE_P(
                   "dir/x.toml:3: key `optional_models`: the model a stands twice"},
         BadConfig{"models_twice", "name = \"t\"\nmodels = [\"a\",\n\"a\"]\n",
                   "dir/x.toml:3: key `models`: the model a stands twice"},
+        BadConfig{"task_nameless", with("[[task]]\ndensity = 1"),
+                  "dir/x.toml:3: key `name`: missing from [[task]]"},
+        BadConfig{"task_twice", with("[[task]]\nname = \"a\"\n[[task]]\nname = \"a\""),
+                  "dir/x.toml:6: key `name`: the name a is taken by the task at dir/x.toml:4"},
+        BadConfig{"task_name", with("[task]\nname = \"a\""),
+                  "dir/x.toml:4: key `name`: unknown key of [task]; ..."},
         BadConfig{"seed_negative", with("seed = -1"),
                   "dir/x.toml:3: key `seed`: must be a whole number from 0 to 9223372036854775807, "
                   "not -1"},

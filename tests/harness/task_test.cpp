@@ -61,14 +61,16 @@ TEST(Task, EveryListedValueCanBeSetAgain) {
   set_task_value(task, "start_mm", "-1.25, 3e2");
   set_task_value(task, "gate_deposit_max", "1.5");
   EXPECT_EQ(task.start_mm, (Point2{-1.25, 300}));
+  set_task_value(task, "skin_rule", "slope");
   Task copy;
   for (const KeyValue& entry : task_values(task)) set_task_value(copy, entry.key, entry.value);
-  ASSERT_EQ(task_values(task).size(), 16U);
+  ASSERT_EQ(task_values(task).size(), 18U);
   for (const KeyValue& entry : task_values(task))
     EXPECT_EQ(value_of(task_values(copy), entry.key), entry.value) << entry.key;
   EXPECT_EQ(value_of(task_values(copy), "layer_height_mm"), "0.1");
   EXPECT_EQ(value_of(task_values(copy), "line_width_mm"), "0.45");
   EXPECT_EQ(value_of(task_values(copy), "start_mm"), "-1.25,300");
+  EXPECT_EQ(value_of(task_values(copy), "skin_rule"), "slope");
 }
 
 TEST(Task, EveryListedPrinterValueCanBeSetAgain) {

@@ -90,6 +90,7 @@ const std::vector<Faithful>& faithful() {
   static const std::vector<Faithful> all{
       {"eulerian", "jump", std::string("extrude")},
       {"eulerian", "variant", std::string("published")},
+      {"rectilinear", "published", std::string("simple_slicer")},
   };
   return all;
 }

@@ -70,7 +70,7 @@ TEST(Eulerian, EveryLayerOfAHotEndBlockIsOneClosedStrokeForEachPart) {
     const Polygons region = inside_of(layer.polygons);
     const Polygons parts = offset(region, -kWidth / 2);
     ASSERT_FALSE(parts.empty());
-    const Route route = plan(region, 1, {}, layer.index);
+    const Route route = plan(region, 1, {{"thin", word("drop")}}, layer.index);
     EXPECT_EQ(route.strokes.size(), parts.size()) << layer.z_mm;
     EXPECT_TRUE(std::all_of(route.strokes.begin(), route.strokes.end(), is_closed)) << layer.z_mm;
   }
@@ -143,7 +143,10 @@ TEST(Eulerian, WhatIsTooSmallForALoopGetsALine) {
   const Route dot = plan(box(kWidth + 0.1, kWidth + 0.1), 1);
   ASSERT_EQ(dot.strokes.size(), 1U);
   EXPECT_NEAR(length_mm(dot), 4 * 0.1, 0.03);
-  EXPECT_TRUE(plan(box(0.4, 0.4), 1).strokes.empty());
+  EXPECT_TRUE(plan(box(0.4, 0.4), 1, {{"thin", word("drop")}}).strokes.empty());
+  const Route thin = plan(box(12, 0.4), 1);
+  ASSERT_EQ(thin.strokes.size(), 1U);
+  EXPECT_NEAR(thin.strokes[0].width_mm, 0.4, 0.02);
 }
 
 TEST(Eulerian, NeighboursAtADiagonalMakeALineToo) {
@@ -168,6 +171,7 @@ TEST(Eulerian, EveryKindOfGraphStaysInsideUnlessItExtrudesItsJumps) {
                                      {{"graph", word(graph)},
                                       {"cells", word(cells)},
                                       {"jump", word(jump)},
+                                      {"thin", word("drop")},
                                       {"max_jump", 1000.0}});
             EXPECT_FALSE(route.strokes.empty());
             EXPECT_LE(outside_mm(reach, route), 0.011);

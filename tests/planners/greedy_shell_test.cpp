@@ -64,7 +64,9 @@ TEST(GreedyShell, EveryWallIsClosedAndLaidOnce) {
             rings += rings_of(region).size();
             perimeter += perimeter_mm(region);
           }
-        const Route route = plan(layer, context, {{"chain", word(chain)}, {"order", word(order)}});
+        const Route route =
+            plan(layer, context,
+                 {{"chain", word(chain)}, {"order", word(order)}, {"gaps", word("leave")}});
         EXPECT_EQ(route.strokes.size(), rings);
         EXPECT_NEAR(length_mm(route), perimeter, 1e-6 * perimeter);
         for (const Stroke& stroke : route.strokes)
@@ -91,7 +93,7 @@ TEST(GreedyShell, AlwaysGoesToTheNearestVertexThatIsLeft) {
   for (const Layer& layer : trial_layers()) {
     PlanContext context = context_for(2);
     context.start = {4, 30};
-    const Route route = plan(layer, context, {{"order", word("any")}});
+    const Route route = plan(layer, context, {{"order", word("any")}, {"gaps", word("leave")}});
     Point2 nozzle = context.start;
     for (std::size_t i = 0; i < route.strokes.size(); ++i) {
       const double gone = squared_distance(nozzle, route.strokes[i].points.front());
@@ -183,6 +185,80 @@ TEST(GreedyShell, WallsFollowTheOutlineOfALivelyLayer) {
     }
   }
   EXPECT_GE(reached, 0.99 * all);
+}
+
+TEST(GreedyShell, APartThinnerThanALineGetsOneOfItsOwnWidth) {
+  const Route route = plan(layer_of({{test::rectangle(0, 0, 20, 0.3125), {}}}), context_for(2));
+  ASSERT_EQ(route.strokes.size(), 1U);
+  const Stroke& stroke = route.strokes[0];
+  EXPECT_NEAR(stroke.width_mm, 0.3125, 0.005);
+  EXPECT_NEAR(length_mm(stroke.points), 20 - 0.3125, 0.02);
+  for (const Point2 p : stroke.points) EXPECT_NEAR(p.y, 0.15625, 0.005);
+  EXPECT_TRUE(
+      plan(layer_of({{test::rectangle(0, 0, 20, 0.1), {}}}), context_for(2)).strokes.empty())
+      << "thinner than any printer's line";
+}
+
+TEST(GreedyShell, AStripBetweenWallsIsFilled) {
+  // The first walls reach (kWidth + kSpacing) / 2 from either side; no second one fits between.
+  const double open_mm = 0.25, width_mm = kWidth + kSpacing + open_mm;
+  const Route route = plan(layer_of({{test::rectangle(0, 0, 20, width_mm), {}}}), context_for(2));
+  ASSERT_EQ(route.strokes.size(), 2U);
+  EXPECT_EQ(route.strokes[0].points.front(), route.strokes[0].points.back());
+  EXPECT_NEAR(route.strokes[1].width_mm, open_mm, 0.01);
+  for (const Point2 p : route.strokes[1].points) EXPECT_NEAR(p.y, width_mm / 2, 0.01);
+  // With one wall asked for, the strip belongs to the inside.
+  EXPECT_EQ(
+      plan(layer_of({{test::rectangle(0, 0, 20, width_mm), {}}}), context_for(1)).strokes.size(),
+      1U);
+}
+
+TEST(GreedyShell, FillingGapsLeavesTheWallsAsTheyAreAndCoversMore) {
+  const auto sorted_walls = [](const Route& route) {
+    std::vector<std::vector<Point2>> walls;
+    for (const Stroke& stroke : route.strokes)
+      if (stroke.width_mm == kWidth && stroke.points.front() == stroke.points.back())
+        walls.push_back(stroke.points);
+    const auto less = [](Point2 a, Point2 b) { return a.x != b.x ? a.x < b.x : a.y < b.y; };
+    for (std::vector<Point2>& wall : walls) std::sort(wall.begin(), wall.end(), less);
+    std::sort(walls.begin(), walls.end(), [&](const auto& a, const auto& b) {
+      return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end(), less);
+    });
+    return walls;
+  };
+  const ParamSet leave{{"gaps", word("leave")}, {"seam", word("min_x")}};
+  const ParamSet fill{{"seam", word("min_x")}};
+  int filled = 0;
+  for (const Layer& layer : trial_layers()) {
+    const Route walls = plan(layer, context_for(3), leave);
+    const Route all = plan(layer, context_for(3), fill);
+    EXPECT_EQ(sorted_walls(all), sorted_walls(walls));
+    if (all.strokes.size() == walls.strokes.size()) continue;
+    ++filled;
+    EXPECT_GT(test::share_under_beads(layer.polygons, all, 0.05),
+              test::share_under_beads(layer.polygons, walls, 0.05));
+  }
+  EXPECT_GT(filled, 5);
+}
+
+TEST(WallGaps, AreWhatNoWallReaches) {
+  for (const Layer& layer : trial_layers())
+    for (const Polygon& polygon : layer.polygons) {
+      const PlanContext context = context_for(3);
+      const std::vector<Polygons> regions = wall_regions(polygon, context);
+      // Offsets are true to 5 um.
+      const Polygons gaps = without_thin_parts(wall_gaps({polygon}, regions, 3, context), 0.02);
+      const double slivers_mm2 = 0.001 * perimeter_mm({polygon});
+      EXPECT_LE(area_mm2(subtract(gaps, {polygon})), slivers_mm2);
+      for (std::size_t wall = 0; wall < regions.size(); ++wall) {
+        const double reach_mm = (wall == 0 ? kWidth : kSpacing) / 2;
+        const Polygons band =
+            subtract(offset(regions[wall], reach_mm), offset(regions[wall], -kSpacing / 2));
+        EXPECT_LE(area_mm2(intersect(gaps, band)), slivers_mm2);
+      }
+    }
+  const Polygon square{test::rectangle(0, 0, 10, 10), {}};
+  EXPECT_TRUE(wall_gaps({square}, wall_regions(square, context_for(3)), 3, context_for(3)).empty());
 }
 
 }  // namespace

@@ -146,7 +146,7 @@ TEST(HatchTest, FlowsAreSoundStraightInsideAndBetweenNeighbours) {
   for (const Layer& layer : test::trial_layers())
     for (const Polygon& polygon : layer.polygons) {
       const Hatch hatch(polygon, level_lines(-0.3, 0.7, 100));
-      const std::vector<Joint> joints = join_flows(hatch, polygon);
+      const std::vector<Joint> joints = join_flows(hatch, &polygon);
       expect_sound(hatch, joints);
       const EdgeGrid edges({polygon});
       for (const Joint& joint : joints) {
@@ -161,7 +161,7 @@ TEST(HatchTest, FlowsEndWhereTheNumberOfPiecesChanges) {
   // Two legs of width 2 that stand on a foot: lines 0 and 1 in the foot, 2 to 4 in the legs.
   const Polygon legs{{{0, 0}, {6, 0}, {6, 5}, {4, 5}, {4, 2}, {2, 2}, {2, 5}, {0, 5}}, {}};
   const Hatch hatch(legs, level_lines(0.5, 1, 5));
-  const auto polylines = joined_lines(hatch, join_flows(hatch, legs));
+  const auto polylines = joined_lines(hatch, join_flows(hatch, &legs));
   ASSERT_EQ(polylines.size(), 3U);
   EXPECT_EQ(polylines[0], (std::vector<Point2>{{0, 0.5}, {6, 0.5}, {6, 1.5}, {0, 1.5}}));
   EXPECT_EQ(polylines[1],

@@ -199,5 +199,71 @@ TEST(Rectilinear, DenseLayersAreCovered) {
     }
 }
 
+TEST(Rectilinear, AsDeKeyserPublishedIt) {
+  // Both directions at half the density, hence 3.5 mm apart; ends pulled in by 3 x 0.2 mm.
+  Layer layer = layer_of({{test::rectangle(1, 1, 11, 11), {}}});
+  layer.height_mm = 0.2;
+  const ParamSet published{{"published", word("dekeyser")}, {"angle_deg", 30.0}};
+  const Route route = plan(layer, context_for(0, 0.25), published);
+  const std::vector<std::vector<Point2>> expected{
+      {{1.6, 3.5}, {10.4, 3.5}}, {{10.4, 7}, {1.6, 7}}, {{1.6, 10.5}, {10.4, 10.5}}};
+  ASSERT_EQ(route.strokes.size(), 6U);
+  for (std::size_t i = 0; i < expected.size(); ++i)
+    for (std::size_t k = 0; k < 2; ++k)
+      EXPECT_LT(distance(route.strokes[i].points[k], expected[i][k]), 1e-5) << i;
+  for (std::size_t i = 3; i < 6; ++i)
+    EXPECT_EQ(route.strokes[i].points[0].x, route.strokes[i].points[1].x);
+
+  // 2.5 mm less 1.2 mm are under seven layer heights.
+  layer.polygons = {{test::rectangle(1, 1, 3.5, 3.5), {}}};
+  EXPECT_TRUE(plan(layer, context_for(0, 1), published).strokes.empty());
+}
+
+TEST(Rectilinear, PublishedFlowsRunOverHollows) {
+  // Two bars that a thin strip joins, with one line in each.
+  const Polygon bars{{{0, 0}, {4, 0}, {4, 1.9}, {10, 1.9}, {10, 4}, {6, 4}, {6, 2.1}, {0, 2.1}},
+                     {}};
+  PlanContext context = context_for(0, kSpacing / 2);
+  context.origin = {0, 1};
+  const Route published = plan(layer_of({bars}), context, {{"published", word("simple_slicer")}});
+  ASSERT_EQ(published.strokes.size(), 1U);
+  EXPECT_EQ(published.strokes[0].points,
+            (std::vector<Point2>{{0.5, 1}, {3.5, 1}, {9.5, 3}, {6.5, 3}}));
+  // Our own rule for flows stays inside.
+  const ParamSet flows{{"angle_deg", 0.0}, {"ends", word("along")}, {"link", word("flows")}};
+  EXPECT_EQ(plan(layer_of({bars}), context, flows).strokes.size(), 2U);
+}
+
+TEST(Rectilinear, ZigzagLaysLineAfterLineToAndFro) {
+  ParamSet params = kLevelLoose;
+  params["order"] = word("zigzag");
+  PlanContext context = context_for(0, 0.25);
+  context.start = {5, 9};
+  const Route route = plan(square(), context, params);
+  ASSERT_EQ(route.strokes.size(), 5U);
+  for (std::size_t i = 0; i < route.strokes.size(); ++i) {
+    EXPECT_EQ(route.strokes[i].points[0].y, 1.75 * static_cast<double>(i + 1));
+    EXPECT_EQ(route.strokes[i].points[0].x < route.strokes[i].points[1].x, i % 2 == 0);
+  }
+}
+
+TEST(Rectilinear, AStripThinnerThanALineIsFilledWhereAllIsDense) {
+  // A square with a tail.
+  const Layer tailed = layer_of(
+      {{{{0, 0}, {10, 0}, {10, 4}, {20, 4}, {20, 4.3125}, {10, 4.3125}, {10, 10}, {0, 10}}, {}}});
+  const auto in_the_tail = [](const Route& route) {
+    double sum_mm = 0;
+    for (const Stroke& stroke : route.strokes)
+      if (stroke.points.front().x > 9.9 && stroke.points.back().x > 9.9) {
+        EXPECT_NEAR(stroke.width_mm, 0.3125, 0.01);
+        sum_mm += length_mm(stroke.points);
+      }
+    return sum_mm;
+  };
+  EXPECT_NEAR(in_the_tail(plan(tailed, context_for(0, 1))), 10, 0.5);
+  EXPECT_EQ(in_the_tail(plan(tailed, context_for(0, 1), {{"thin", word("drop")}})), 0);
+  EXPECT_EQ(in_the_tail(plan(tailed, context_for(0, 0.5))), 0);
+}
+
 }  // namespace
 }  // namespace routebench

@@ -5,48 +5,34 @@
 #include <CLI/CLI.hpp>
 #include <cerrno>
 #include <csignal>
-#include <filesystem>
 #include <memory>
 #include <string>
 #include <system_error>
 #include <vector>
 
+#include "installed_files.hpp"
 #include "routebench/geometry/error.hpp"
 #include "routebench/harness/commands.hpp"
 
 namespace routebench {
 namespace {
 
-namespace fs = std::filesystem;
-
 /// The distribution's Python: one that stands earlier in the search path may lack matplotlib.
 constexpr const char* kPython = "/usr/bin/python3";
-constexpr const char* kPackage = "routebench_plots";
 
 struct PlotOptions {
   std::string results;
   std::string out;
   std::string formats = "png,svg";
   std::string metrics;
+  std::string baseline;
 };
-
-/// The package of an installed program, or else of the source tree that this one was built from.
-fs::path plot_package() {
-  std::error_code error;
-  const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  const fs::path installed =
-      (program.parent_path() / ROUTEBENCH_PLOTS_FROM_PROGRAM / kPackage).lexically_normal();
-  const fs::path source = fs::path(ROUTEBENCH_PLOTS_SOURCE_DIR) / kPackage;
-  for (const fs::path& place : {installed, source})
-    if (fs::is_regular_file(place / "__main__.py", error)) return place;
-  throw Error(ErrorKind::kBadInput, "plots need the Python package " + std::string(kPackage) +
-                                        ", which is neither at " + installed.string() + " nor at " +
-                                        source.string() + "; install routebench again");
-}
 
 std::vector<std::string> python_arguments(const PlotOptions& options) {
   // Isolated from the user's own packages, leaving no compiled files behind.
-  std::vector<std::string> arguments{kPython, "-I", "-B", plot_package() / "__main__.py"};
+  std::vector<std::string> arguments{
+      kPython, "-I", "-B",
+      data_folder("routebench_plots", ROUTEBENCH_PLOTS_SOURCE, "__main__.py") / "__main__.py"};
   const auto add = [&](const char* name, const std::string& value) {
     // One word each, so that a value may begin with a dash.
     if (!value.empty()) arguments.push_back(std::string(name) + "=" + value);
@@ -54,6 +40,7 @@ std::vector<std::string> python_arguments(const PlotOptions& options) {
   add("--out", options.out);
   add("--formats", options.formats);
   add("--metrics", options.metrics);
+  add("--baseline", options.baseline);
   arguments.insert(arguments.end(), {"--", options.results});
   return arguments;
 }
@@ -128,6 +115,9 @@ void add_plot_command(CLI::App& app, int& exit_code) {
   command->add_option("--metrics", options->metrics,
                       "metrics that get bars and table columns, with commas between them, or all "
                       "[those of interest]");
+  command->add_option("--baseline", options->baseline,
+                      "contender that the summary compares the others with [the one valid on most "
+                      "models]");
   command->callback([options, &exit_code] { exit_code = run_program(python_arguments(*options)); });
 }
 

@@ -41,7 +41,8 @@ struct ConfiguredModel {
 
 /// One point of the sweep over [task] and [printer].
 struct Setting {
-  std::string label;  ///< the swept keys, "density=0.2, retract_over_mm=1"; empty without a sweep
+  std::string label;  ///< the task's name, if it has one, and the swept keys:
+                      ///< "walls, retract_over_mm=1"; empty without either
   Task task;
   Printer printer;
 };

@@ -24,12 +24,21 @@ struct GateLimits {
   double hollow_share_max = 0.001;  ///< of extrude_mm
 };
 
+/// Which parts of a layer must be dense, besides what lies below the task's base height.
+enum class SkinRule {
+  kDifference,  ///< what has air within skin_layers layers (see find_solid)
+  kSlope,       ///< whole layers about facets that rise by less than a fifth (De Keyser, 2016)
+  kNear,        ///< whole layers near level facets (De Keyser, 2016, an earlier rule)
+};
+
 struct Task {
   double layer_height_mm = 0.2;
   double line_width_mm = 0.45;
   int perimeters = 2;
   double density = 0.2;  ///< of what is neither wall nor skin; 0 leaves it empty
   int skin_layers = 3;
+  SkinRule skin_rule = SkinRule::kDifference;
+  double base_mm = 0;     ///< layers cut below this height are dense as a whole
   double join_mm = 0.01;  ///< strokes whose gap is no longer than this count as one
   Point2 start_mm;  ///< where the nozzle is when a layer's planning begins; the same for all layers
   GateLimits gate;

@@ -88,9 +88,10 @@ struct Joint {
   std::vector<Point2> path;  ///< from end to end, both included
 };
 
-/// Joins pieces of neighbouring lines straight while the number of pieces stays the same and the
-/// joint stays inside the region. Source   a tutorial's "flows": piece k goes on as piece k.
-[[nodiscard]] std::vector<Joint> join_flows(const Hatch& hatch, const Polygon& region);
+/// Joins pieces of neighbouring lines straight while the number of pieces stays the same and, if a
+/// region is given, the joint stays inside it.
+/// Source   a tutorial's "flows": piece k goes on as piece k, wherever that leads.
+[[nodiscard]] std::vector<Joint> join_flows(const Hatch& hatch, const Polygon* region);
 
 /// Joins pieces whose ends are neighbours on the boundary along it, if that is at most max_mm long.
 /// No stretch of the boundary is used twice, and no stroke is closed. Lines are joined from the

@@ -18,10 +18,19 @@ namespace routebench {
 enum class PlannerRole { kShell, kFill };
 
 struct PlannerInfo {
+  /// A parameter at a value.
+  struct Setting {
+    std::string param;
+    std::string value;
+  };
+
   std::string name;  ///< as in configs: snake_case
   PlannerRole role = PlannerRole::kFill;
   std::string summary;  ///< one line
   std::string source;   ///< author, year; empty if it is our own
+  /// With any of these the planner does as its paper did and may leave the polygons, which the
+  /// judge then calls off task; the conformance test leaves them out.
+  std::vector<Setting> may_leave = {};
 };
 
 /// What a class must have to be registered.

@@ -13,6 +13,20 @@ namespace routebench {
 /// is left or context.perimeters are there. Takes   an island in any frame.
 [[nodiscard]] std::vector<Polygons> wall_regions(const Polygon& island, const PlanContext& context);
 
+/// What `count` walls leave open before and between them: parts narrower than a line, and strips
+/// between walls in which no further one fits. What lies inside the last of them is none of it.
+///
+/// Takes   polygons and their wall_regions, fewer than `count` if no more fit.
+/// Returns polygons, with slivers of a few micrometres among them.
+/// Cost    linear where nothing is narrow; else two offsets a wall and one Boolean operation.
+[[nodiscard]] Polygons wall_gaps(const Polygons& polygons, const std::vector<Polygons>& regions,
+                                 int count, const PlanContext& context);
+
+/// Lines along the middle of wall_gaps, each as wide as its gap: from a third of a line to a line.
+[[nodiscard]] std::vector<Stroke> gap_lines(const Polygons& polygons,
+                                            const std::vector<Polygons>& regions, int count,
+                                            const PlanContext& context);
+
 /// All rings of polygons: each outer one followed by its holes.
 [[nodiscard]] std::vector<Ring> rings_of(const Polygons& polygons);
 

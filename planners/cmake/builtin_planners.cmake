@@ -1,15 +1,3 @@
-# What turns a planner's source into something that a program knows.
-
-# routebench_add_planner(<name> <source>...)
-#
-# Builds a planner as a plugin: the shared library <name>.so, loaded at run time. The source ends with
-# ROUTEBENCH_REGISTER(<name>) { ... }.
-function(routebench_add_planner name)
-  add_library(${name} MODULE ${ARGN})
-  set_target_properties(${name} PROPERTIES PREFIX "" CXX_STANDARD 20 CXX_STANDARD_REQUIRED ON)
-  target_link_libraries(${name} PRIVATE routebench::planning)
-endfunction()
-
 # routebench_builtin_planners(<name>...)
 #
 # Compiles <name>.cpp for every name into the static library routebench::planners, with the helpers

@@ -1,0 +1,23 @@
+#include "installed_files.hpp"
+
+#include <system_error>
+
+#include "routebench/geometry/error.hpp"
+
+namespace routebench {
+
+namespace fs = std::filesystem;
+
+fs::path data_folder(const std::string& name, const fs::path& source, const std::string& file) {
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  const fs::path installed =
+      (program.parent_path() / ROUTEBENCH_DATA_FROM_PROGRAM / name).lexically_normal();
+  for (const fs::path& place : {installed, source})
+    if (fs::is_regular_file(place / file, error)) return place;
+  throw Error(ErrorKind::kBadInput, "the program's folder " + name + " is neither at " +
+                                        installed.string() + " nor at " + source.string() +
+                                        "; install routebench again");
+}
+
+}  // namespace routebench

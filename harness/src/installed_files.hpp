@@ -1,0 +1,18 @@
+#pragma once
+/// Files that belong to the program and are not compiled into it.
+
+#include <filesystem>
+#include <string>
+
+namespace routebench {
+
+/// The folder `name` of an installed program's data, or else `source`, its place in the source tree
+/// that this program was built from.
+///
+/// Takes  a file in the folder that tells it from any other.
+/// Throws Error{kBadInput} naming both places if it is at neither.
+[[nodiscard]] std::filesystem::path data_folder(const std::string& name,
+                                                const std::filesystem::path& source,
+                                                const std::string& file);
+
+}  // namespace routebench

@@ -1,0 +1,201 @@
+#include "routebench/planning/centre_lines.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "middle_lines.hpp"
+#include "routebench/geometry/edge_grid.hpp"
+#include "routebench/geometry/grid.hpp"
+#include "routebench/geometry/region.hpp"
+#include "routebench/geometry/vec.hpp"
+#include "routebench/planning/ring_path.hpp"
+
+namespace routebench {
+namespace {
+
+constexpr double kWidthRatio = 1.25;  // of the places that one stroke takes
+constexpr double kStraightMm = 0.004;
+constexpr int kHalvings = 8;
+
+/// Marks the points that a polyline needs to stay within kStraightMm.
+void mark_needed(const std::vector<Point2>& points, std::vector<bool>& needed) {
+  std::vector<std::pair<std::size_t, std::size_t>> stretches{{0, points.size() - 1}};
+  while (!stretches.empty()) {
+    const auto [from, to] = stretches.back();
+    stretches.pop_back();
+    needed[from] = needed[to] = true;
+    double farthest = kStraightMm * kStraightMm;
+    std::size_t at = from;
+    for (std::size_t i = from + 1; i < to; ++i) {
+      const Point2 foot = nearest_on_segment(points[i], points[from], points[to]);
+      if (squared_distance(points[i], foot) <= farthest) continue;
+      farthest = squared_distance(points[i], foot);
+      at = i;
+    }
+    if (at == from) continue;
+    stretches.emplace_back(from, at);
+    stretches.emplace_back(at, to);
+  }
+}
+
+std::vector<Point2> straightened(const std::vector<Point2>& points) {
+  std::vector<bool> needed(points.size(), false);
+  mark_needed(points, needed);
+  std::vector<Point2> kept;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (needed[i]) kept.push_back(points[i]);
+  return kept;
+}
+
+/// Makes strokes of the middle lines of one polygon.
+class StrokeCutter {
+ public:
+  StrokeCutter(const CentreLineRule& rule, const EdgeGrid& edges, Point2 origin,
+               std::vector<Stroke>& strokes)
+      : rule_(rule), edges_(edges), origin_(origin), strokes_(strokes) {}
+
+  void cut(const MiddleLine& line) {
+    std::size_t begin = 0;
+    for (std::size_t i = 0; i <= line.points.size(); ++i) {
+      if (i < line.points.size() && 2 * line.radii_mm[i] >= rule_.min_width_mm) continue;
+      if (i > begin) cut_by_width(line, begin, i - 1);
+      begin = i + 1;
+    }
+  }
+
+ private:
+  [[nodiscard]] double width_at(const MiddleLine& line, std::size_t i) const {
+    return std::min(2 * line.radii_mm[i], rule_.max_width_mm);
+  }
+
+  /// Cuts the points first..last, all wide enough, where their width changes.
+  void cut_by_width(const MiddleLine& line, std::size_t first, std::size_t last) {
+    double length = 0;
+    for (std::size_t i = first; i < last; ++i)
+      length += distance(line.points[i], line.points[i + 1]);
+    // A free end is half a width short of its part's end.
+    if (line.free_front && first == 0) length += line.radii_mm[first];
+    if (line.free_back && last + 1 == line.points.size()) length += line.radii_mm[last];
+    if (length < rule_.min_length_mm) return;
+    std::size_t begin = first;
+    double least = width_at(line, first), most = least, piece_mm = 0;
+    for (std::size_t i = first + 1; i <= last; ++i) {
+      const double width = width_at(line, i);
+      // A piece shorter than half its width is under the round end of its neighbour anyway.
+      if (std::max(most, width) > kWidthRatio * std::min(least, width) && piece_mm > most / 2) {
+        lay(line, begin, i - 1);
+        begin = i - 1;
+        least = most = width_at(line, begin);
+        piece_mm = 0;
+      }
+      least = std::min(least, width);
+      most = std::max(most, width);
+      piece_mm += distance(line.points[i - 1], line.points[i]);
+    }
+    if (begin == first || piece_mm > most / 2) lay(line, begin, last);
+  }
+
+  void lay(const MiddleLine& line, std::size_t first, std::size_t last) {
+    std::vector<Point2> points(line.points.begin() + static_cast<std::ptrdiff_t>(first),
+                               line.points.begin() + static_cast<std::ptrdiff_t>(last) + 1);
+    points = straightened(points);
+    Stroke stroke;
+    stroke.width_mm = width_of(points);
+    if (points.size() >= 2) {
+      if (line.free_back && last + 1 == line.points.size()) lengthen(points, stroke.width_mm);
+      if (line.free_front && first == 0) {
+        std::reverse(points.begin(), points.end());
+        lengthen(points, stroke.width_mm);
+        std::reverse(points.begin(), points.end());
+      }
+    }
+    for (const Point2 p : points)
+      if (const Point2 q = snap(p) + origin_; stroke.points.empty() || stroke.points.back() != q)
+        stroke.points.push_back(q);
+    if (stroke.points.size() >= 2) strokes_.push_back(std::move(stroke));
+  }
+
+  [[nodiscard]] double width_of(const std::vector<Point2>& points) const {
+    double least = rule_.max_width_mm, area = 0, length = 0;
+    for (std::size_t i = 1; i < points.size(); ++i) {
+      const double piece = distance(points[i - 1], points[i]);
+      const int steps = static_cast<int>(piece / (rule_.max_width_mm / 4)) + 1;
+      for (int k = 0; k <= steps; ++k) {
+        const double width = width_at(lerp(points[i - 1], points[i], 1.0 * k / steps));
+        least = std::min(least, width);
+        area += width * piece / (k == 0 || k == steps ? 2 * steps : steps);
+      }
+      length += piece;
+    }
+    return rule_.width == CentreLineWidth::kMean && length > 0
+               ? std::min(area / length, kWidthRatio * least)
+               : least;
+  }
+
+  [[nodiscard]] double width_at(Point2 p) const {
+    const auto radius_mm = edges_.distance_to_edge_mm(p, rule_.max_width_mm / 2);
+    return radius_mm ? 2 * *radius_mm : rule_.max_width_mm;
+  }
+
+  /// Moves the last point on, until its bead touches the boundary.
+  void lengthen(std::vector<Point2>& points, double width_mm) const {
+    const Point2 end = points.back(), before = points[points.size() - 2];
+    const double piece_mm = distance(before, end);
+    if (piece_mm <= 0) return;
+    const Point2 way = (1 / piece_mm) * (end - before);
+    const auto fits = [&](double mm) {
+      return !edges_.distance_to_edge_mm(end + mm * way, width_mm / 2 - kStraightMm);
+    };
+    // No step is longer than the place is clear of the boundary.
+    double clear = 0, blocked = 0;
+    while (clear < rule_.max_width_mm) {
+      blocked = clear + edges_.distance_to_edge_mm(end + clear * way, rule_.max_width_mm)
+                            .value_or(rule_.max_width_mm);
+      if (!fits(blocked)) break;
+      clear = blocked;
+    }
+    for (int i = 0; i < kHalvings; ++i) {
+      const double middle = (clear + blocked) / 2;
+      (fits(middle) ? clear : blocked) = middle;
+    }
+    points.back() = end + clear * way;
+  }
+
+  const CentreLineRule& rule_;
+  const EdgeGrid& edges_;
+  Point2 origin_;
+  std::vector<Stroke>& strokes_;
+};
+
+Ring moved(Ring ring, Point2 by) {
+  for (Point2& p : ring) p = p + by;
+  return ring;
+}
+
+}  // namespace
+
+std::vector<Stroke> centre_lines(const Polygons& thin, const CentreLineRule& rule,
+                                 const PlanContext& context) {
+  std::vector<Stroke> strokes;
+  if (thin.empty()) return strokes;
+  // Relative to a corner, so that the place does not matter.
+  const Point2 origin = bounding_box(thin).lower;
+  Polygons near_origin;
+  for (const Polygon& polygon : thin) {
+    Polygon& own = near_origin.emplace_back();
+    own.outer = moved(polygon.outer, Point2{} - origin);
+    for (const Ring& hole : polygon.holes) own.holes.push_back(moved(hole, Point2{} - origin));
+  }
+  for (const Polygon& polygon : without_thin_parts(near_origin, rule.min_width_mm)) {
+    stop_if_asked(context);
+    const Box2 box = bounding_box({polygon});
+    if (distance(box.lower, box.upper) < rule.min_length_mm) continue;
+    const EdgeGrid edges({polygon});
+    StrokeCutter cutter(rule, edges, origin, strokes);
+    for (const MiddleLine& line : middle_lines(polygon, edges, rule.max_width_mm)) cutter.cut(line);
+  }
+  return strokes;
+}
+
+}  // namespace routebench

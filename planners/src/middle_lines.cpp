@@ -1,0 +1,199 @@
+#include "middle_lines.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+
+#include "chordal_axis.hpp"
+#include "routebench/geometry/region.hpp"
+#include "routebench/geometry/vec.hpp"
+
+namespace routebench {
+namespace {
+
+// A spur ends in a corner if it and the disc at its end reach no farther than so many radii of the
+// disc where it begins: the corner of a rectangle lies 1.41 radii away, one of 45 degrees 2.6.
+constexpr double kSpurRadii = 1.7;
+constexpr int kPruningRounds = 4;
+constexpr double kWiderMm = 0.01;  // less is not wider
+// Chords between samples that are no farther apart than the polygon is wide run nearly across.
+constexpr double kLeastStepMm = 0.05;
+
+/// The axis of one polygon while spurs are taken from it.
+class PrunedAxis {
+ public:
+  PrunedAxis(ChordalAxis axis, const EdgeGrid& edges, double farthest_mm)
+      : axis_(std::move(axis)),
+        edges_(edges),
+        farthest_mm_(farthest_mm),
+        is_left_(axis_.chords.size(), true),
+        degree_(axis_.triangles.size()) {
+    for (std::size_t i = 0; i < degree_.size(); ++i) degree_[i] = axis_.triangles[i].count;
+    for (int round = 0; round < kPruningRounds && prune(); ++round) {
+    }
+  }
+
+  [[nodiscard]] std::vector<MiddleLine> lines() const {
+    std::vector<MiddleLine> lines;
+    std::vector<bool> is_open = is_left_;
+    for (std::uint32_t triangle = 0; triangle < degree_.size(); ++triangle) {
+      if (degree_[triangle] != 1 && degree_[triangle] != 3) continue;
+      for (std::uint32_t i = 0; i < axis_.triangles[triangle].count; ++i) {
+        const std::uint32_t chord = axis_.triangles[triangle].chords[i];
+        if (is_open[chord]) lines.push_back(line_from(triangle, chord, is_open));
+      }
+    }
+    for (std::uint32_t chord = 0; chord < is_open.size(); ++chord)  // loops without ends or forks
+      if (is_open[chord])
+        lines.push_back(line_from(axis_.chords[chord].triangles[0], chord, is_open));
+    return lines;
+  }
+
+ private:
+  struct Spur {
+    std::uint32_t junction;
+    double reach_mm;
+    std::vector<std::uint32_t> chords;
+  };
+
+  [[nodiscard]] double radius_mm(Point2 p) const {
+    return edges_.distance_to_edge_mm(p, farthest_mm_).value_or(farthest_mm_);
+  }
+
+  [[nodiscard]] std::uint32_t across(std::uint32_t chord, std::uint32_t triangle) const {
+    const auto& sides = axis_.chords[chord].triangles;
+    return sides[0] == triangle ? sides[1] : sides[0];
+  }
+
+  /// The chord of a triangle that is left besides the given one.
+  [[nodiscard]] std::uint32_t other_chord(std::uint32_t triangle, std::uint32_t chord) const {
+    const ChordalAxis::Triangle& of = axis_.triangles[triangle];
+    for (std::uint32_t i = 0; i < of.count; ++i)
+      if (of.chords[i] != chord && is_left_[of.chords[i]]) return of.chords[i];
+    return chord;
+  }
+
+  /// Takes all spurs away that now are too short; true if there was one.
+  bool prune() {
+    std::vector<Spur> spurs;
+    for (std::uint32_t triangle = 0; triangle < degree_.size(); ++triangle)
+      if (degree_[triangle] == 1) note_spur(triangle, spurs);
+    std::stable_sort(spurs.begin(), spurs.end(), [](const Spur& a, const Spur& b) {
+      return a.junction != b.junction ? a.junction < b.junction : a.reach_mm < b.reach_mm;
+    });
+    bool pruned = false;
+    for (std::size_t i = 0; i < spurs.size(); ++i) {
+      // Where all three arms are short, the longer two remain as one line.
+      if (degree_[spurs[i].junction] < 3 || is_one_of_three(spurs, i)) continue;
+      for (const std::uint32_t chord : spurs[i].chords) {
+        is_left_[chord] = false;
+        for (const std::uint32_t triangle : axis_.chords[chord].triangles) --degree_[triangle];
+      }
+      pruned = true;
+    }
+    return pruned;
+  }
+
+  static bool is_one_of_three(const std::vector<Spur>& spurs, std::size_t i) {
+    const auto same = [&](std::size_t k) {
+      return k < spurs.size() && spurs[k].junction == spurs[i].junction;
+    };
+    const bool second = i >= 1 && same(i - 1) && same(i + 1);
+    const bool third = i >= 2 && same(i - 1) && same(i - 2);
+    return second || third;
+  }
+
+  void note_spur(std::uint32_t triangle, std::vector<Spur>& spurs) const {
+    std::uint32_t chord = other_chord(triangle, UINT32_MAX);
+    Spur spur{0, radius_mm(axis_.chords[chord].middle), {}};
+    while (true) {
+      spur.chords.push_back(chord);
+      triangle = across(chord, triangle);
+      if (degree_[triangle] != 2) break;
+      const std::uint32_t next = other_chord(triangle, chord);
+      spur.reach_mm += distance(axis_.chords[chord].middle, axis_.chords[next].middle);
+      if (spur.reach_mm > kSpurRadii * farthest_mm_) return;
+      chord = next;
+    }
+    if (degree_[triangle] != 3) return;
+    const Point2 centre = axis_.triangles[triangle].centre;
+    spur.junction = triangle;
+    spur.reach_mm += distance(axis_.chords[chord].middle, centre);
+    if (spur.reach_mm < kSpurRadii * radius_mm(centre)) spurs.push_back(std::move(spur));
+  }
+
+  MiddleLine line_from(std::uint32_t triangle, std::uint32_t chord,
+                       std::vector<bool>& is_open) const {
+    MiddleLine line;
+    const auto go_to = [&](Point2 p) {
+      line.points.push_back(p);
+      line.radii_mm.push_back(radius_mm(p));
+    };
+    line.free_front = degree_[triangle] == 1;
+    if (degree_[triangle] == 3) go_to(axis_.triangles[triangle].centre);
+    while (true) {
+      is_open[chord] = false;
+      go_to(axis_.chords[chord].middle);
+      triangle = across(chord, triangle);
+      if (degree_[triangle] != 2) break;
+      chord = other_chord(triangle, chord);
+      if (!is_open[chord]) {  // round a loop
+        go_to(axis_.chords[chord].middle);
+        return line;
+      }
+    }
+    line.free_back = degree_[triangle] == 1;
+    if (degree_[triangle] == 3) go_to(axis_.triangles[triangle].centre);
+    return line;
+  }
+
+  ChordalAxis axis_;
+  const EdgeGrid& edges_;
+  double farthest_mm_;
+  std::vector<bool> is_left_;          // chords
+  std::vector<std::uint32_t> degree_;  // chords left, of a triangle
+};
+
+/// Takes the part of a line's free back away that runs on into a corner.
+void trim_back(MiddleLine& line) {
+  const double tip_mm = line.radii_mm.back();
+  double reach_mm = tip_mm, widest_mm = tip_mm;
+  std::size_t keep = line.points.size();
+  for (std::size_t i = keep - 1; i-- > 0;) {
+    reach_mm += distance(line.points[i], line.points[i + 1]);
+    if (reach_mm < kSpurRadii * line.radii_mm[i] && line.radii_mm[i] > kWiderMm + widest_mm) {
+      keep = i + 1;
+      widest_mm = line.radii_mm[i];
+    }
+    if (reach_mm > kSpurRadii * kSpurRadii * widest_mm) break;
+  }
+  if (keep < 2) return;
+  line.points.resize(keep);
+  line.radii_mm.resize(keep);
+}
+
+void trim_free_ends(MiddleLine& line) {
+  if (line.free_back) trim_back(line);
+  if (!line.free_front) return;
+  std::reverse(line.points.begin(), line.points.end());
+  std::reverse(line.radii_mm.begin(), line.radii_mm.end());
+  trim_back(line);
+  std::reverse(line.points.begin(), line.points.end());
+  std::reverse(line.radii_mm.begin(), line.radii_mm.end());
+}
+
+}  // namespace
+
+std::vector<MiddleLine> middle_lines(const Polygon& polygon, const EdgeGrid& edges,
+                                     double widest_mm) {
+  const double mean_width_mm = 2 * area_mm2(polygon) / perimeter_mm(Polygons{polygon});
+  const double step_mm =
+      std::clamp(mean_width_mm, kLeastStepMm, std::max(kLeastStepMm, widest_mm / 2));
+  std::vector<MiddleLine> lines =
+      PrunedAxis(chordal_axis(polygon, step_mm), edges, widest_mm).lines();
+  for (MiddleLine& line : lines) trim_free_ends(line);
+  return lines;
+}
+
+}  // namespace routebench
