@@ -26,7 +26,7 @@ class SquareGraph {
     const Pitch pitch{pitch_mm, pitch_mm, 0, false};
     x_ = axis_over(box.lower.x, box.upper.x, pitch);
     y_ = axis_over(box.lower.y, box.upper.y, pitch);
-    node_of_.assign(std::size_t{x_.count} * y_.count, kNone);
+    node_of_.assign(framed_places(x_, y_), kNone);
   }
 
   PlacedGraph build() {

@@ -17,7 +17,9 @@ struct PlacedGraph {
 
 /// Level and upright lines at multiples of a pitch, cut at the boundary: nodes where they cross
 /// each other and where they end. Ends nearer than `least_mm` to a crossing are left out, and so
-/// are lines that short. Cost   linear in lines, crossings and squares of the bounding box.
+/// are lines that short.
+/// Throws  see framed_places.
+/// Cost    linear in lines, crossings and squares of the bounding box.
 [[nodiscard]] PlacedGraph square_graph(const Polygon& region, double pitch_mm, double least_mm);
 
 /// Which leaves of a quadtree are nodes.

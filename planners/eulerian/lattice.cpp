@@ -20,10 +20,10 @@ namespace {
 constexpr double kWaveMm = 0.01;
 // An even number of lines is worth to lie so much nearer or farther than wanted.
 constexpr double kEvenSlack = 0.1;
-constexpr double kMostPlaces = 67108864;  // 2^26
-// In pitches: how far outside a place may lie to be pulled in, how far inside to be pushed out, how
-// near to each other nodes may come by that, and how long a way along the wall may be.
-constexpr double kPullIn = 0.5, kPushOut = 0.25, kNearest = 0.5, kLongestWay = 2;
+constexpr double kMostPlaces = 16777216;  // 2^24
+// In pitches: how far inside a place may lie to be pushed out to the boundary, how near to each
+// other nodes may come when they are moved there, and how long a way along the wall may be.
+constexpr double kPushOut = 0.25, kNearest = 0.5, kLongestWay = 2;
 
 double mean_step_mm(const Axis& x, const Axis& y) { return std::sqrt(x.step_mm * y.step_mm); }
 
@@ -53,15 +53,20 @@ Axis axis_over(double low_mm, double high_mm, const Pitch& pitch) {
           static_cast<std::uint32_t>(count)};
 }
 
+std::uint32_t framed_places(const Axis& x, const Axis& y) {
+  const double places = (x.count + 2.0) * (y.count + 2.0);
+  if (!(places <= kMostPlaces))
+    throw Error(ErrorKind::kBadInput, "eulerian: a region takes " +
+                                          std::to_string(static_cast<long long>(places)) +
+                                          " places at this line width, more than 16777216");
+  return static_cast<std::uint32_t>(places);
+}
+
 Lattice::Lattice(const Polygon& region, const Pitch& pitch) : pitch_(pitch), edges_({region}) {
   const Box2 box = bounding_box({region});
   x_ = axis_over(box.lower.x, box.upper.x, pitch);
   y_ = axis_over(box.lower.y, box.upper.y, pitch);
-  const double places = (x_.count + 2.0) * (y_.count + 2.0);
-  if (!(places <= kMostPlaces))
-    throw Error(ErrorKind::kBadInput, "eulerian: a region takes " +
-                                          std::to_string(static_cast<long long>(places)) +
-                                          " places at this line width, more than 67108864");
+  const std::uint32_t size = framed_places(x_, y_);
   stride_ = x_.count + 2;
   wall_.rings = rings_of({region});
   for (const Ring& ring : wall_.rings) {
@@ -70,7 +75,6 @@ Lattice::Lattice(const Polygon& region, const Pitch& pitch) : pitch_(pitch), edg
       along.push_back(along.back() + distance(ring[i], ring[i + 1 == ring.size() ? 0 : i + 1]));
     wall_.along_mm.push_back(std::move(along));
   }
-  const auto size = static_cast<std::size_t>(places);
   has_.assign(size, 0);
   joined_.assign(size, 0);
   rim_of_.assign(size, kNone);

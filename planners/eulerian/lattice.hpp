@@ -36,17 +36,22 @@ struct Axis {
 /// and their number is even if that costs no more than a tenth of the pitch.
 [[nodiscard]] Axis axis_over(double low_mm, double high_mm, const Pitch& pitch);
 
+/// Number of places that two axes span, with a frame of one place round them.
+/// Throws Error{kBadInput} if they are more than 2^24 (a square of 1.6 m at 0.4 mm), about 30 bytes
+/// each.
+[[nodiscard]] std::uint32_t framed_places(const Axis& x, const Axis& y);
+
 /// A lattice over one polygon. Nodes are numbered row by row with a frame of empty places round
 /// them, so that the neighbours of a node are node +- 1 and node +- stride().
 ///
-/// Places of the lattice that lie outside by less than half a pitch are pulled in to the boundary,
-/// and those inside it by less than a quarter are pushed out to it: so a region has as many nodes
-/// as its area takes, and its rim follows the wall. No place is pulled nearer than half a pitch to
-/// another.
+/// Places that lie outside by no more than the margin are pulled in to the boundary, and those
+/// inside it by less than a quarter of the pitch are pushed out to it: so a region has as many
+/// nodes as what is to be filled takes, and its rim follows the wall. None comes nearer than half a
+/// pitch to another by that.
 class Lattice {
  public:
-  /// Throws Error{kBadInput} if more than 2^26 places would be needed (a square of 3 m at 0.4 mm).
-  /// Cost   linear in places and boundary vertices, and in the boundary's length over the pitch.
+  /// Throws  see framed_places.
+  /// Cost    linear in places and boundary vertices, and in the boundary's length over the pitch.
   Lattice(const Polygon& region, const Pitch& pitch);
 
   [[nodiscard]] std::uint32_t stride() const noexcept { return stride_; }

@@ -11,6 +11,7 @@
 #include "eulerian/lattice.hpp"
 #include "eulerian/tree_coverage.hpp"
 #include "planning.hpp"
+#include "routebench/geometry/error.hpp"
 #include "routebench/planning/matching.hpp"
 
 namespace routebench::eulerian {
@@ -202,6 +203,11 @@ TEST(Lattice, FittedAxesShareEvenlyAndNeverTooWide) {
     EXPECT_NEAR(axis.first_mm - (1 - kWidth / 2), axis.step_mm / 2, 0.011);
     EXPECT_NEAR(1 + length + kWidth / 2 - axis.at(axis.count - 1), axis.step_mm / 2, 0.011);
   }
+}
+
+TEST(Lattice, RefusesMorePlacesThanItHoldsInMemory) {
+  EXPECT_EQ(framed_places({0, 1, 4094}, {0, 1, 4094}), 16777216U);
+  EXPECT_THROW((void)framed_places({0, 1, 4094}, {0, 1, 4095}), Error);
 }
 
 TEST(Lattice, NodesLieInsideAndKeepTheirDistance) {
