@@ -30,13 +30,17 @@ bool Loops::join_across(std::uint32_t node, bool level) {
   if (!linked(a, b) || !linked(c, d)) return false;
   const bool ways = level ? lattice_.joined_right(node) && lattice_.joined_right(up)
                           : lattice_.joined_up(node) && lattice_.joined_up(node + 1);
-  if (!ways || sets_.find_set(a) == sets_.find_set(c)) return false;
+  if (!ways || same_loop(a, c)) return false;
+  join(a, b, c, d);
+  return true;
+}
+
+void Loops::join(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
   replace(a, b, c);
   replace(b, a, d);
   replace(c, d, a);
   replace(d, c, b);
   sets_.union_set(a, c);
-  return true;
 }
 
 void Loops::insert(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {

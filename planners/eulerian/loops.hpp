@@ -32,6 +32,13 @@ class Loops {
   /// `level` the sides are upright and the new links level.
   bool join_across(std::uint32_t node, bool level);
 
+  /// True if two nodes that lie in loops lie in the same one.
+  [[nodiscard]] bool same_loop(std::uint32_t a, std::uint32_t b) {
+    return sets_.find_set(a) == sets_.find_set(b);
+  }
+  /// Joins two loops: instead of a and b, and of c and d, a and c are linked, and b and d.
+  void join(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d);
+
   /// Takes two nodes c and d that lie in no loop in between a and b, which are linked.
   void insert(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d);
   /// Takes one node.

@@ -57,6 +57,29 @@ class TreeWalk {
       for_each_node([&](std::uint32_t node) { loops_.join_across(node, level); });
   }
 
+  /// Joins loops that lie side by side but have no square between them, where that costs least.
+  void join_others() {
+    for_each_node([&](std::uint32_t a) {
+      if (!loops_.holds(a)) return;
+      double least_mm = std::numeric_limits<double>::max();
+      std::array<std::uint32_t, 3> best{};
+      for (const std::uint32_t step : steps_) {
+        const std::uint32_t c = a + step;
+        if (!loops_.holds(c) || loops_.same_loop(a, c) || !lattice_.joined(a, c)) continue;
+        for (const std::uint32_t b : loops_.links(a))
+          for (const std::uint32_t d : loops_.links(c)) {
+            if (!is_neighbour(b, d) || !lattice_.joined(b, d)) continue;
+            const double more_mm =
+                length_mm(a, c) + length_mm(b, d) - length_mm(a, b) - length_mm(c, d);
+            if (more_mm >= least_mm) continue;
+            least_mm = more_mm;
+            best = {b, c, d};
+          }
+      }
+      if (best != std::array<std::uint32_t, 3>{}) loops_.join(a, best[0], best[1], best[2]);
+    });
+  }
+
   /// Takes nodes into the loops that pass by until no more can be.
   void insert_others() {
     for_each_node([&](std::uint32_t node) {
@@ -147,8 +170,7 @@ class TreeWalk {
       if (!lattice_.has(a) || !loops_.holds(a) || !lattice_.joined(c, a)) continue;
       for (const std::uint32_t b : loops_.links(a)) {
         if (!is_neighbour(c, b) || !lattice_.joined(c, b)) continue;
-        const Point2 pa = lattice_.place(a), pb = lattice_.place(b), pc = lattice_.place(c);
-        const double more_mm = distance(pa, pc) + distance(pc, pb) - distance(pa, pb);
+        const double more_mm = length_mm(a, c) + length_mm(c, b) - length_mm(a, b);
         if (more_mm >= least_mm) continue;
         least_mm = more_mm;
         best = {a, b};
@@ -157,6 +179,11 @@ class TreeWalk {
     if (best.first == kNone) return false;
     loops_.insert(best.first, best.second, c);
     return true;
+  }
+
+  /// Between the places of two nodes.
+  [[nodiscard]] double length_mm(std::uint32_t a, std::uint32_t b) const {
+    return distance(lattice_.place(a), lattice_.place(b));
   }
 
   [[nodiscard]] bool is_neighbour(std::uint32_t a, std::uint32_t b) const {
@@ -256,6 +283,7 @@ TreeStrokes cover_by_tree(const Lattice& lattice, TreeOrder order, const PlanCon
   walk.join_cells(order);
   walk.insert_others();
   walk.join_cells(order);
+  walk.join_others();
   return walk.strokes();
 }
 
