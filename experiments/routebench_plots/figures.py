@@ -8,7 +8,16 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
-from . import bars, curves, outcomes, routes, scatter, summary, tables
+from . import (
+    bars,
+    curves,
+    outcomes,
+    routes,
+    scaling,
+    scatter,
+    summary,
+    tables,
+)
 from .errors import PlotError
 from .naming import file_slugs
 from .quantities import in_sentence
@@ -32,6 +41,7 @@ METRICS_OF_INTEREST = (
 _CURVES = ("travel_mm", "retractions")
 _RUNTIME = "plan_cpu_ns"
 _COST = "travel_mm"
+_SIZE = "extrude_mm"
 _MODELS_PER_MATRIX = 30
 
 
@@ -190,6 +200,24 @@ def _metric_figures(
                 _titled(words, setting),
             ),
         )
+    size = results.metric(_SIZE)
+    if (
+        size is not None
+        and runtime is not None
+        and scaling.fits(results, setting, size, runtime)
+    ):
+        words = f"Growth of {in_sentence(runtime.label)}"
+        yield Figure(
+            f"scaling-{runtime.name}-{size.name}{suffix}",
+            partial(
+                scaling.draw,
+                results,
+                setting,
+                size,
+                runtime,
+                _titled(words, setting),
+            ),
+        )
 
 
 def _model_figures(
@@ -206,7 +234,7 @@ def _model_figures(
             f"layers-{slug}{suffix}",
             partial(curves.draw, results, setting, model, metrics, title),
         )
-    for index, z_mm in results.kept_layers(model):
+    for index, z_mm in results.kept_layers(setting, model):
         title = _titled(
             f"Layer {index} of {model.label}, z = {z_mm:.6g} mm", setting
         )

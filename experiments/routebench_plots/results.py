@@ -125,9 +125,7 @@ class Results:
             self._slots, self.earlier_cells = self._read_slots()
             self.experiment = self._read_experiment()
             self.metrics = self._read_metrics()
-            self.models = self._read_items(
-                "model", "spec, mesh_hash || layers_hash"
-            )
+            self.models, self._model_rows = self._read_models()
             self.contenders = tuple(
                 sorted(
                     self._read_items("contender", "name, variant_hash"),
@@ -161,8 +159,10 @@ class Results:
 
     def slot(self, setting: Item, model: Item, contender: Item) -> Slot:
         """What is known of a contender on a model under a setting."""
-        key = (setting.row_id, model.row_id, contender.row_id)
-        return self._slots.get(key, Slot())
+        row = self._model_rows.get((setting.row_id, model.row_id))
+        return self._slots.get(
+            (setting.row_id, row, contender.row_id), Slot()
+        )
 
     def value(self, slot: Slot, metric: Metric) -> Value | None:
         """The metric over the slot's valid cells; None where absent.
@@ -236,21 +236,28 @@ class Results:
         )
         return _number(rows[0][0]) if rows else None
 
-    def kept_layers(self, model: Item) -> list[tuple[int, float]]:
+    def kept_layers(
+        self, setting: Item, model: Item
+    ) -> list[tuple[int, float]]:
         """Index and height of the layers whose pictures were kept."""
         rows = self._query(
             "SELECT layer_index, z_mm FROM layer_shape WHERE model_id = ? "
             "ORDER BY layer_index",
-            (model.row_id,),
+            (self._model_rows.get((setting.row_id, model.row_id)),),
         )
         return [(int(row[0]), float(row[1])) for row in rows]
 
-    def layer_wkt(self, model: Item, layer_index: int) -> str:
+    def layer_wkt(
+        self, setting: Item, model: Item, layer_index: int
+    ) -> str:
         """The material of a kept layer."""
         rows = self._query(
             "SELECT wkt FROM layer_shape "
             "WHERE model_id = ? AND layer_index = ?",
-            (model.row_id, layer_index),
+            (
+                self._model_rows[setting.row_id, model.row_id],
+                layer_index,
+            ),
         )
         return str(rows[0][0])
 
@@ -300,6 +307,39 @@ class Results:
         )
         labels = distinct_labels([(str(r[1]), str(r[2])) for r in rows])
         return tuple(Item(int(r[0]), text) for r, text in zip(rows, labels))
+
+    def _read_models(
+        self,
+    ) -> tuple[tuple[Item, ...], dict[tuple[int, int], int]]:
+        """The models, and which row each of them is under a setting.
+
+        Tasks that want other layers or skins cut the same file anew: these
+        rows are one model, as long as no setting has two of them.
+        """
+        items = self._read_items("model", "spec, mesh_hash || layers_hash")
+        specs = dict(self._query("SELECT model_id, spec FROM model"))
+        used: dict[str, dict[int, set[int]]] = defaultdict(
+            lambda: defaultdict(set)
+        )
+        for setting, model, _ in self._slots:
+            used[specs[model]][setting].add(model)
+        models = []
+        rows = {}
+        for item in items:
+            spec = specs[item.row_id]
+            by_setting = used[spec]
+            if all(len(found) == 1 for found in by_setting.values()):
+                first = min(m for found in by_setting.values() for m in found)
+                if item.row_id != first:
+                    continue
+                item = Item(first, printable(spec))
+                for setting, found in by_setting.items():
+                    rows[setting, first] = next(iter(found))
+            else:
+                for setting in by_setting:
+                    rows[setting, item.row_id] = item.row_id
+            models.append(item)
+        return tuple(models), rows
 
     def _read_experiment(self) -> str:
         rows = self._query("SELECT value FROM meta WHERE key = 'experiment'")

@@ -67,7 +67,7 @@ def draw(
         for contender in results.contenders
     ]
     polygons = read_multipolygon(
-        results.layer_wkt(model, layer_index),
+        results.layer_wkt(setting, model, layer_index),
         f"{results.database}: model {model.label}, layer {layer_index}",
     )
     strokes = [s for p in pictures for s in p.strokes or ()]

@@ -53,10 +53,13 @@ void mark_solid(std::vector<Layer>& layers, const Task& task, const Mesh* mesh,
 SlicedModel slice_mesh_model(const std::string& spec, const Task& task,
                              const SliceModelOptions& options, const ParallelFor& parallel_for) {
   Model model = load_model(spec, {.repair = options.repair});
-  Slices slices = slice_mesh(
-      model.mesh,
-      {.layer_height_mm = task.layer_height_mm, .method = options.method, .repair = options.repair},
-      spec, parallel_for);
+  const SliceOptions slicing{.layer_height_mm = task.layer_height_mm,
+                             .method = options.method,
+                             .repair = options.repair,
+                             .cell_mm = options.cell_mm.value_or(task.line_width_mm)};
+  if (options.method == SliceMethod::kVoxel && options.on_container)
+    options.on_container(voxel_container(model.mesh, slicing, spec));
+  Slices slices = slice_mesh(model.mesh, slicing, spec, parallel_for);
   SlicedModel sliced;
   sliced.mesh = model.report;
   sliced.mesh_hash = model.content_hash;

@@ -88,6 +88,29 @@ class ReadTest(PlotTestCase):
             ["c [0123456]", "c [abcdefg]"],
         )
 
+    def test_a_model_cut_anew_for_another_task_is_one_model(self) -> None:
+        made = Database(self.folder / "r.sqlite")
+        contender = made.contender("c")
+        thick, thin = made.setting("thick"), made.setting("thin")
+        for setting, hash_, travel in ((thick, "a", 1.0), (thin, "b", 2.0)):
+            made.cell(
+                made.model("part.stl", hash_),
+                contender,
+                setting,
+                {"travel_mm": travel},
+            )
+        results = self.open(made.close())
+        self.assertEqual([m.label for m in results.models], ["part.stl"])
+        travel = self.metric(results, "travel_mm")
+        values = [
+            results.value(
+                results.slot(s, results.models[0], results.contenders[0]),
+                travel,
+            )
+            for s in results.settings
+        ]
+        self.assertEqual([v.median for v in values if v], [1.0, 2.0])
+
     def test_only_the_last_run_counts(self) -> None:
         made = Database(self.folder / "r.sqlite")
         model, setting = made.model("m"), made.setting()

@@ -112,6 +112,7 @@ INSTANTIATE_TEST_SUITE_P(
         ShapeCase{"shape:gear?twist_deg=30", kGearVolume, 0.05},
         ShapeCase{"shape:comb?x=62&teeth=16", (62 * 6 + 16 * 2 * 24) * 5, 1e-9},
         ShapeCase{"shape:comb?x=30&y=20&z=1&back=5&teeth=2", (30 * 5 + 2 * 10 * 15) * 1, 1e-9},
+        ShapeCase{"shape:grate?holes=3", (18 * 18 - 9 * 4 * kPi) * 3, 0.03},
         // Two slots of 1 mm, whose pointed ends add up to half a square each.
         ShapeCase{"shape:text?text=-", 2 * (22 * 32 - 2 * (5 - 3.2 + 0.5)), 1e-9},
         ShapeCase{"shape:gyroid?x=15&y=15&z=15", kGyroidVolume, 0.1, 18'001}));
@@ -173,15 +174,17 @@ TEST(ShapeNames, ThroughHolesMakeHandles) {
   EXPECT_EQ(holes("shape:gear"), 1);
   EXPECT_EQ(holes("shape:hotend"), 4);
   EXPECT_EQ(holes("shape:bracket"), 5);
+  EXPECT_EQ(holes("shape:grate?holes=4"), 16);
 }
 
 TEST(ShapeNames, WhatCannotBeBuiltIsRefused) {
   for (const char* const spec :
        {"shape:hotend?nozzle=20", "shape:bracket?plate=40", "shape:bracket?hole=20",
-        "shape:gear?bore=40", "shape:comb?back=40", "shape:islands?plate=20", "shape:gyroid?wall=5",
-        "shape:gyroid?x=1000&y=1000&z=1000", "shape:voronoi?strut=9", "shape:torus?tube=20",
-        "shape:box?x=0", "shape:box?x=-1", "shape:box?x=nan", "shape:box?x=1e9",
-        "shape:gear?teeth=2.5", "shape:gear?teeth=0", "shape:sphere?triangles=1000000000"}) {
+        "shape:gear?bore=40", "shape:comb?back=40", "shape:grate?diameter=6",
+        "shape:islands?plate=20", "shape:gyroid?wall=5", "shape:gyroid?x=1000&y=1000&z=1000",
+        "shape:voronoi?strut=9", "shape:torus?tube=20", "shape:box?x=0", "shape:box?x=-1",
+        "shape:box?x=nan", "shape:box?x=1e9", "shape:gear?teeth=2.5", "shape:gear?teeth=0",
+        "shape:sphere?triangles=1000000000"}) {
     EXPECT_NE(refusal_of(spec), "") << spec;
   }
 }

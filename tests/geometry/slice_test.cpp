@@ -252,6 +252,7 @@ TEST(SliceMethod, NamesAreUnderstoodOrRefused) {
   EXPECT_EQ(slice_method("bucket"), SliceMethod::kBucket);
   EXPECT_EQ(slice_method("sweep"), SliceMethod::kSweep);
   EXPECT_EQ(slice_method("naive"), SliceMethod::kNaive);
+  EXPECT_EQ(slice_method("voxel"), SliceMethod::kVoxel);
   EXPECT_THROW(static_cast<void>(slice_method("fast")), Error);
 }
 

@@ -118,6 +118,34 @@ TEST_F(SliceCommand, BadUsageIsOneLine) {
   expect_refused({"slice", "shape:box", "--wkt", in_folder("no/where.wkt")}, "no/where.wkt");
 }
 
+TEST_F(SliceCommand, VoxelsSayWhatTheyNeedAndTakeTheLineWidth) {
+  const ProgramRun run =
+      call({"slice", "shape:box?size=12", "--method", "voxel", "--task", "line_width_mm=0.5",
+            "--task", "layer_height_mm=0.4", "--json", "-"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const json document = run.json();
+  EXPECT_EQ(document["method"], "voxel");
+  const json& mesh = document["mesh"];
+  const auto cells = [&](std::size_t axis) {
+    return std::floor(
+               (mesh["upper_mm"][axis].get<double>() - mesh["lower_mm"][axis].get<double>()) / 0.5 +
+               0.5) +
+           1;
+  };
+  for (const json& layer : document["layers"])
+    EXPECT_EQ(layer["area_mm2"], cells(0) * cells(1) * 0.25);
+  // One empty cell all round.
+  EXPECT_NE(run.err.find(" of " + std::to_string(std::lround(cells(0)) + 2) + " x "), run.err.npos)
+      << run.err;
+  EXPECT_EQ(call({"slice", "shape:box?size=12", "--method", "voxel", "--cell", "0.5", "--task",
+                  "layer_height_mm=0.4", "--json", "-"})
+                .json()["layers"],
+            document["layers"]);
+  expect_refused({"slice", "shape:box", "--method", "voxel", "--cell", "0.0001"}, "GiB");
+  expect_refused({"slice", "shape:box", "--method", "voxel", "--cell", "-1"}, "cell_mm");
+  expect_refused({"slice", "shape:box", "--cell", "1"}, "--cell");
+}
+
 class PlannersCommand : public test::ProgramTest {};
 
 TEST_F(PlannersCommand, ListsWhatIsRegisteredAndFromWhere) {

@@ -123,9 +123,9 @@ TEST(CentreLines, BeadsStayInsideAndFillNarrowParts) {
 
 TEST(CentreLines, TheyMoveWithThePolygons) {
   const Point2 by{snap(137.3), snap(-61.7)};
-  for (const test::NastyLayer& nasty : test::nasty_layers()) {
-    if (nasty.name == "thousand_islands") continue;
-    const Polygons& here = nasty.layer.polygons;
+  for (const TrialLayer& trial : routebench::trial_layers()) {
+    if (trial.name == "thousand_islands") continue;
+    const Polygons& here = trial.layer.polygons;
     Polygons there = here;
     for (Polygon& polygon : there) {
       for (Point2& p : polygon.outer) p = p + by;
@@ -138,7 +138,7 @@ TEST(CentreLines, TheyMoveWithThePolygons) {
         EXPECT_EQ(p, snap(p));
         p = p + by;
       }
-    EXPECT_EQ(lines_of(there), expected) << nasty.name;
+    EXPECT_EQ(lines_of(there), expected) << trial.name;
   }
 }
 

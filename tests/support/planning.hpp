@@ -5,15 +5,17 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "nasty_layers.hpp"
+#include "polygons.hpp"
 #include "random_polygons.hpp"
 #include "routebench/geometry/edge_grid.hpp"
 #include "routebench/geometry/region.hpp"
 #include "routebench/geometry/vec.hpp"
+#include "routebench/harness/conformance.hpp"
 #include "routebench/planning/plugin.hpp"
 #include "routebench/planning/ring_path.hpp"
 
@@ -54,11 +56,18 @@ inline double length_mm(const Route& route) {
   return sum;
 }
 
+/// A wavy outline with a wavy hole, as a scanned figure has.
+inline Polygons blob() {
+  for (TrialLayer& trial : routebench::trial_layers())
+    if (trial.name == "blob") return std::move(trial.layer.polygons);
+  throw std::logic_error("there is no trial layer of that name");
+}
+
 /// Layers on which two ways of planning are compared.
 inline std::vector<Layer> trial_layers() {
   std::vector<Layer> layers;
-  for (const NastyLayer& nasty : nasty_layers())
-    if (nasty.name != "thousand_islands") layers.push_back(nasty.layer);
+  for (TrialLayer& trial : routebench::trial_layers())
+    if (trial.name != "thousand_islands") layers.push_back(std::move(trial.layer));
   for (std::uint64_t seed = 1; seed <= 10; ++seed)
     layers.push_back(layer_of(random_polygons(seed), static_cast<int>(seed)));
   return layers;

@@ -135,6 +135,28 @@ Mesh make_comb(ShapeQuery& query) {
   return refined(triangles, kArcMm, [&](double) { return stack({{ring, 0, z}}); });
 }
 
+/// A square plate full of round holes, `holes` in a row, like the grate of a filter.
+Mesh make_grate(ShapeQuery& query) {
+  const int holes = query.count("holes", 8, 1, 500);
+  const double pitch = query.mm("pitch", 6);
+  const double diameter = query.mm("diameter", 4);
+  const double z = query.mm("z", 3);
+  const std::size_t triangles =
+      query.triangles(static_cast<std::size_t>(64) * static_cast<std::size_t>(holes * holes));
+  query.finish();
+  if (!(diameter + kLeastWallMm <= pitch)) query.refuse("the holes must be smaller than the pitch");
+  const double side = pitch * holes;
+  return refined(triangles, kArcMm, [&](double arc) {
+    std::vector<Wall> walls{{rectangle({0, 0}, {side, side}), 0, z}};
+    for (int row = 0; row < holes; ++row)
+      for (int column = 0; column < holes; ++column)
+        walls.push_back(
+            {reversed(circle({(column + 0.5) * pitch, (row + 0.5) * pitch}, diameter / 2, arc)), 0,
+             z});
+    return stack(walls);
+  });
+}
+
 /// A rounded base plate with four screw holes, two cheeks and a bored boss between them.
 Mesh make_bracket(ShapeQuery& query) {
   const double x = query.mm("x", 60);

@@ -22,6 +22,7 @@ constexpr std::array kMakers{
     Maker{"gear", make_gear},     Maker{"comb", make_comb},
     Maker{"text", make_text},     Maker{"islands", make_islands},
     Maker{"gyroid", make_gyroid}, Maker{"voronoi", make_voronoi},
+    Maker{"grate", make_grate},
 };
 
 }  // namespace

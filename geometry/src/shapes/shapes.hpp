@@ -27,6 +27,7 @@ namespace routebench::shapes {
 [[nodiscard]] Mesh make_gear(ShapeQuery& query);
 [[nodiscard]] Mesh make_comb(ShapeQuery& query);
 [[nodiscard]] Mesh make_bracket(ShapeQuery& query);
+[[nodiscard]] Mesh make_grate(ShapeQuery& query);
 [[nodiscard]] Mesh make_islands(ShapeQuery& query);
 [[nodiscard]] Mesh make_text(ShapeQuery& query);
 [[nodiscard]] Mesh make_gyroid(ShapeQuery& query);

@@ -235,6 +235,8 @@ CutTable cut_triangles(const Mesh& mesh, const Planes& planes, SliceMethod metho
     case SliceMethod::kNaive:
       fill_naively(levelled, table, parallel_for);
       break;
+    case SliceMethod::kVoxel:
+      throw Error(ErrorKind::kInternal, "voxels do not cut triangles");
   }
   return table;
 }

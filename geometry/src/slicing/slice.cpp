@@ -13,6 +13,7 @@
 #include "slicing/close_gaps.hpp"
 #include "slicing/cut_triangles.hpp"
 #include "slicing/slivers.hpp"
+#include "slicing/voxel_layers.hpp"
 
 namespace routebench {
 namespace {
@@ -67,6 +68,9 @@ void check_options(const SliceOptions& options) {
   if (!(options.layer_height_mm > 0 && std::isfinite(options.layer_height_mm)))
     throw Error(ErrorKind::kBadInput, "layer_height_mm = " + text(options.layer_height_mm) +
                                           ": must be a number above 0, for example 0.2");
+  if (!(options.cell_mm > 0 && std::isfinite(options.cell_mm)))
+    throw Error(ErrorKind::kBadInput, "cell_mm = " + text(options.cell_mm) +
+                                          ": must be a number above 0, for example 0.45");
   if (!(options.crack_mm >= 0 && std::isfinite(options.crack_mm)))
     throw Error(ErrorKind::kBadInput, "crack_mm = " + text(options.crack_mm) +
                                           ": must be a number of at least 0, for example 0.1");
@@ -140,14 +144,73 @@ SliceReport summarise(const std::vector<Layer>& layers, const std::vector<Closin
   return report;
 }
 
+constexpr double kMostVoxelBytes = 1U << 30U;
+
+/// The container of a mesh, or a refusal if it is too large.
+slicing::VoxelFrame checked_frame(const Mesh& mesh, const Planes& planes, double cell_mm,
+                                  const std::string& model_name) {
+  const slicing::VoxelFrame frame = slicing::frame_of(mesh, planes, cell_mm);
+  if (!(frame.bytes() <= kMostVoxelBytes))
+    refuse(model_name, "cells of " + text(cell_mm) + " x " + text(cell_mm) + " x " +
+                           text(planes.height_mm) + " mm would take " +
+                           text(frame.bytes() / kMostVoxelBytes) +
+                           " GiB, more than the 1 GiB that there may be: take larger cells");
+  return frame;
+}
+
+/// What a closed surface encloses.
+double volume_mm3(const Mesh& mesh) {
+  double sum = 0;
+  for (const auto& [i, k, m] : mesh.triangles) {
+    const Point3 &a = mesh.vertices[i], &b = mesh.vertices[k], &c = mesh.vertices[m];
+    sum += a.x * (b.y * c.z - b.z * c.y) + a.y * (b.z * c.x - b.x * c.z) +
+           a.z * (b.x * c.y - b.y * c.x);
+  }
+  return sum / 6;
+}
+
+Slices slice_by_voxels(const Mesh& mesh, const Planes& planes, const SliceOptions& options,
+                       const std::string& model_name, const ParallelFor& parallel_for) {
+  // Less than the mesh encloses is found only where the flood came in.
+  constexpr double kLeastShare = 0.98;
+  const slicing::VoxelFrame frame = checked_frame(mesh, planes, options.cell_mm, model_name);
+  std::vector<Polygons> polygons = slicing::voxel_layers(mesh, frame, parallel_for);
+  Slices slices;
+  double cells_mm3 = 0;
+  for (std::size_t i = 0; i < polygons.size(); ++i) {
+    Layer& layer = slices.layers.emplace_back();
+    layer.index = static_cast<int>(i);
+    layer.z_mm = planes.z_mm(layer.index);
+    layer.height_mm = options.layer_height_mm;
+    layer.polygons = std::move(polygons[i]);
+    cells_mm3 += area_mm2(layer.polygons) * layer.height_mm;
+  }
+  const double mesh_mm3 = volume_mm3(mesh);
+  if (cells_mm3 < kLeastShare * mesh_mm3)
+    slices.report.warnings.push_back(
+        "the cells hold " + text(cells_mm3) + " mm3, the mesh " + text(mesh_mm3) +
+        " mm3: its surface is open by more than a cell, or its shells overlap");
+  return slices;
+}
+
 }  // namespace
 
 SliceMethod slice_method(std::string_view name) {
   if (name == "bucket") return SliceMethod::kBucket;
   if (name == "sweep") return SliceMethod::kSweep;
   if (name == "naive") return SliceMethod::kNaive;
-  throw Error(ErrorKind::kBadUsage,
-              "unknown slicing method '" + std::string(name) + "': choose bucket, sweep or naive");
+  if (name == "voxel") return SliceMethod::kVoxel;
+  throw Error(ErrorKind::kBadUsage, "unknown slicing method '" + std::string(name) +
+                                        "': choose bucket, sweep, naive or voxel");
+}
+
+VoxelContainer voxel_container(const Mesh& mesh, const SliceOptions& options,
+                               const std::string& model_name) {
+  check_options(options);
+  check_mesh(mesh, model_name);
+  const slicing::VoxelFrame frame = checked_frame(
+      mesh, planes_through(mesh, options.layer_height_mm, model_name), options.cell_mm, model_name);
+  return {frame.count, frame.bytes()};
 }
 
 Slices slice_mesh(const Mesh& mesh, const SliceOptions& options, const std::string& model_name,
@@ -155,6 +218,8 @@ Slices slice_mesh(const Mesh& mesh, const SliceOptions& options, const std::stri
   check_options(options);
   check_mesh(mesh, model_name);
   const Planes planes = planes_through(mesh, options.layer_height_mm, model_name);
+  if (options.method == SliceMethod::kVoxel)
+    return slice_by_voxels(mesh, planes, options, model_name, parallel_for);
   const CutTable table = cut_triangles(mesh, planes, options.method, model_name, parallel_for);
 
   Slices slices;

@@ -1,11 +1,13 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "arguments.hpp"
 #include "json_documents.hpp"
+#include "routebench/geometry/error.hpp"
 #include "routebench/geometry/layer_io.hpp"
 #include "routebench/geometry/region.hpp"
 #include "routebench/harness/commands.hpp"
@@ -19,6 +21,7 @@ struct SliceArguments {
   std::string model;
   std::vector<std::string> task;
   std::string method = "bucket";
+  std::optional<double> cell_mm;
   std::string wkt;
   std::string svg;
   std::string json;
@@ -76,13 +79,27 @@ void print_summary(std::ostream& out, const SlicedModel& model) {
   print_rows(out, rows);
 }
 
+void print_container(const std::string& model, const VoxelContainer& container) {
+  constexpr double kMebibyte = 1048576;
+  std::cerr << "routebench: " << model << ": a container of " << container.cells[0] << " x "
+            << container.cells[1] << " x " << container.cells[2] << " cells takes "
+            << readable(container.bytes / kMebibyte) << " MiB\n";
+}
+
 void slice(const SliceArguments& arguments) {
   const Task task = task_of(arguments.task);
-  const SlicedModel model = slice_model(arguments.model, task,
-                                        {.method = slice_method(arguments.method),
-                                         .repair = arguments.repair,
-                                         .find_skins = !arguments.svg.empty()},
-                                        parallel_loop(arguments.jobs));
+  const SliceMethod method = slice_method(arguments.method);
+  if (arguments.cell_mm && method != SliceMethod::kVoxel)
+    throw Error(ErrorKind::kBadUsage, "--cell: only --method voxel has cells");
+  const SlicedModel model = slice_model(
+      arguments.model, task,
+      {.method = method,
+       .repair = arguments.repair,
+       .find_skins = !arguments.svg.empty(),
+       .cell_mm = arguments.cell_mm,
+       .on_container =
+           [&](const VoxelContainer& container) { print_container(arguments.model, container); }},
+      parallel_loop(arguments.jobs));
   print_warnings(arguments.model, model.warnings);
   OutputSet outputs;
   if (!arguments.wkt.empty())
@@ -113,9 +130,15 @@ void add_slice_command(CLI::App& app, int& exit_code) {
   add_task_option(command, arguments->task);
   command
       .add_option("--method", arguments->method,
-                  "How triangles and planes are brought together; the layers are the same")
-      ->type_name("bucket|sweep|naive")
+                  "How triangles become layers: the first three give the same; voxel approximates "
+                  "them by the outlines of cells in which or inside which the surface runs")
+      ->type_name("bucket|sweep|naive|voxel")
       ->capture_default_str();
+  command
+      .add_option("--cell", arguments->cell_mm,
+                  "Side of a voxel in x and y (in z it is a layer high); the task's line width if "
+                  "not given")
+      ->type_name("MM");
   command.add_option("--wkt", arguments->wkt, "Write the layers, one MULTIPOLYGON a line")
       ->type_name("FILE");
   command.add_option("--svg", arguments->svg, "Draw each layer into a folder")->type_name("DIR");

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <stop_token>
@@ -39,6 +40,10 @@ struct SliceModelOptions {
   SliceMethod method = SliceMethod::kBucket;
   bool repair = false;     ///< see ModelOptions and SliceOptions
   bool find_skins = true;  ///< whether Layer::solid is wanted
+  std::optional<double> cell_mm =
+      std::nullopt;  ///< for voxel: see SliceOptions; else the task's line width
+  /// Told what container voxel is going to use, before it does.
+  std::function<void(const VoxelContainer&)> on_container = {};
 };
 
 /// A model cut into layers; the mesh itself is no longer held.
