@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "routebench/planning/nearest_grid.hpp"
 #include "routebench/planning/ordering.hpp"
 #include "routebench/planning/plugin.hpp"
+#include "routebench/planning/seam.hpp"
 #include "routebench/planning/walls.hpp"
 
 namespace {
@@ -21,7 +23,6 @@ using namespace routebench;
 
 enum class SearchKind { kGrid, kNaive };
 enum class Chain { kGreedy, kLinear };
-enum class Seam { kNearest, kFixedPoint, kMinX };
 enum class Order { kInsideOut, kOutsideIn, kAny };
 enum class Thin { kDrop, kDouble };
 enum class Gaps { kFill, kLeave };
@@ -29,9 +30,7 @@ enum class Gaps { kFill, kLeave };
 struct ShellParams {
   SearchKind search = SearchKind::kGrid;
   Chain chain = Chain::kGreedy;
-  Seam seam = Seam::kNearest;
-  double seam_x_mm = 0;
-  double seam_y_mm = 0;
+  SeamParams seam;
   Order order = Order::kInsideOut;
   Thin thin = Thin::kDouble;
   Gaps gaps = Gaps::kFill;
@@ -42,13 +41,7 @@ struct ShellParams {
          "how the nearest segment is found: naive looks at every one each time; same route");
     bind("chain", chain, {{"greedy", Chain::kGreedy}, {"linear", Chain::kLinear}},
          "greedy goes to the nearest segment; linear takes walls by smallest x, without a search");
-    bind(
-        "seam", seam,
-        {{"nearest", Seam::kNearest}, {"fixed_point", Seam::kFixedPoint}, {"min_x", Seam::kMinX}},
-        "where a wall begins: at its vertex nearest to the nozzle, nearest to a fixed point, or of "
-        "smallest x");
-    bind("seam_x_mm", seam_x_mm, {-10000, 10000}, "mm", "of the fixed point, from the origin");
-    bind("seam_y_mm", seam_y_mm, {-10000, 10000}, "mm", "of the fixed point, from the origin");
+    seam.bind(bind);
     bind("order", order,
          {{"inside_out", Order::kInsideOut},
           {"outside_in", Order::kOutsideIn},
@@ -101,13 +94,14 @@ class Pool {
     return segment + 1 < ring_end(ring) ? segment + 1 : ring_begin(ring);
   }
 
-  /// The segment of a ring whose start comes first by `less`; of equals the first.
-  template <typename Less>
-  [[nodiscard]] std::uint32_t first_of_ring(std::size_t ring, Less less) const {
-    std::uint32_t best = ring_begin(ring);
-    for (std::uint32_t i = best + 1; i < ring_end(ring); ++i)
-      if (less(points_[i], points_[best])) best = i;
-    return best;
+  /// The starts of a ring's segments.
+  [[nodiscard]] std::span<const Point2> ring(std::size_t ring) const {
+    return {points_.data() + ring_begin(ring), points_.data() + ring_end(ring)};
+  }
+
+  /// The segment with which a ring begins, for a nozzle at `from`.
+  [[nodiscard]] std::uint32_t begin_of(std::size_t of, const SeamRule& seam, Point2 from) const {
+    return ring_begin(of) + static_cast<std::uint32_t>(seam.begin_of(ring(of), from));
   }
 
  private:
@@ -117,42 +111,14 @@ class Pool {
   std::vector<bool> twice_round_;
 };
 
-bool less_by_x(Point2 a, Point2 b) { return a.x != b.x ? a.x < b.x : a.y < b.y; }
-
-struct NearerTo {
-  Point2 place;
-  bool operator()(Point2 a, Point2 b) const {
-    return squared_distance(a, place) < squared_distance(b, place);
-  }
-};
-
-/// Chooses where a wall may be begun.
-class SeamRule {
- public:
-  explicit SeamRule(const ShellParams& params)
-      : seam_(params.seam), place_{params.seam_x_mm, params.seam_y_mm} {}
-
-  [[nodiscard]] bool anywhere() const { return seam_ == Seam::kNearest; }
-
-  /// The segment with which a ring begins, for a nozzle at `from`.
-  [[nodiscard]] std::uint32_t begin_of(const Pool& pool, std::size_t ring, Point2 from) const {
-    if (seam_ == Seam::kMinX) return pool.first_of_ring(ring, less_by_x);
-    return pool.first_of_ring(ring, NearerTo{seam_ == Seam::kNearest ? from : place_});
-  }
-
-  /// Every segment with which a ring of the pool may begin.
-  [[nodiscard]] std::vector<bool> entries(const Pool& pool) const {
-    std::vector<bool> may_begin(pool.size(), anywhere());
-    if (anywhere()) return may_begin;
-    for (std::size_t ring = 0; ring < pool.rings(); ++ring)
-      may_begin[begin_of(pool, ring, place_)] = true;
-    return may_begin;
-  }
-
- private:
-  Seam seam_;
-  Point2 place_;
-};
+/// Every segment with which a ring of the pool may begin.
+std::vector<bool> entries(const Pool& pool, const SeamRule& seam) {
+  std::vector<bool> may_begin(pool.size(), seam.anywhere());
+  if (seam.anywhere()) return may_begin;
+  for (std::size_t ring = 0; ring < pool.rings(); ++ring)
+    may_begin[pool.begin_of(ring, seam, {})] = true;
+  return may_begin;
+}
 
 // The three searches answer the same question: which segment comes next for a nozzle at `from`, if
 // `follower` (nothing at the end of a ring) begins just there? It is the nearest of all, so it
@@ -162,7 +128,7 @@ class SeamRule {
 class NaiveSearch {
  public:
   NaiveSearch(const Pool& pool, const SeamRule& seam)
-      : pool_(pool), may_begin_(seam.entries(pool)) {}
+      : pool_(pool), may_begin_(entries(pool, seam)) {}
 
   std::optional<std::uint32_t> next(Point2 from, std::optional<std::uint32_t> follower) const {
     std::optional<std::uint32_t> best = follower;
@@ -186,7 +152,7 @@ class NaiveSearch {
 class GridSearch {
  public:
   GridSearch(const Pool& pool, const SeamRule& seam) : grid_(pool.points()) {
-    const std::vector<bool> may_begin = seam.entries(pool);
+    const std::vector<bool> may_begin = entries(pool, seam);
     for (std::uint32_t i = 0; i < pool.size(); ++i)
       if (!may_begin[i]) grid_.remove(i);
   }
@@ -200,12 +166,16 @@ class GridSearch {
   NearestGrid grid_;
 };
 
+Point2 leftmost(std::span<const Point2> points) {
+  return *std::min_element(points.begin(), points.end(), less_by_x);
+}
+
 /// No search at all: rings by their smallest x.
 class LinearOrder {
  public:
   LinearOrder(const Pool& pool, const SeamRule& seam) : pool_(pool), seam_(seam) {
     for (std::uint32_t ring = 0; ring < pool.rings(); ++ring)
-      leftmost_.emplace_back(pool.start(pool.first_of_ring(ring, less_by_x)), ring);
+      leftmost_.emplace_back(leftmost(pool.ring(ring)), ring);
     std::stable_sort(leftmost_.begin(), leftmost_.end(),
                      [](const auto& a, const auto& b) { return less_by_x(a.first, b.first); });
   }
@@ -213,7 +183,7 @@ class LinearOrder {
   std::optional<std::uint32_t> next(Point2 from, std::optional<std::uint32_t> follower) {
     if (follower) return follower;
     if (done_ == leftmost_.size()) return std::nullopt;
-    return seam_.begin_of(pool_, leftmost_[done_++].second, from);
+    return pool_.begin_of(leftmost_[done_++].second, seam_, from);
   }
   void remove(std::uint32_t) {}
 
@@ -295,7 +265,7 @@ class NearestIsland {
 
 Point2 leftmost(const Island& island) {
   const std::vector<Point2> points = island.entries();
-  return *std::min_element(points.begin(), points.end(), less_by_x);
+  return leftmost(std::span<const Point2>(points));
 }
 
 class GreedyShell final : public Planner {
@@ -308,7 +278,7 @@ class GreedyShell final : public Planner {
             "K. De Keyser, 2016"};
   }
 
-  explicit GreedyShell(const Params& params) : params_(params), seam_(params) {}
+  explicit GreedyShell(const Params& params) : params_(params), seam_(params.seam) {}
 
   [[nodiscard]] Route plan(const Layer& layer, const PlanContext& context) const override {
     const Frame frame(layer, context);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "chordal_axis.hpp"
 #include "middle_lines.hpp"
 #include "routebench/geometry/edge_grid.hpp"
 #include "routebench/geometry/grid.hpp"
@@ -17,6 +18,9 @@ namespace {
 constexpr double kWidthRatio = 1.25;  // of the places that one stroke takes
 constexpr double kStraightMm = 0.004;
 constexpr int kHalvings = 8;
+// A dot is so much narrower than its place, so that it has a length.
+constexpr double kDotShare = 0.8;
+constexpr double kDotSamples = 8;
 
 /// Marks the points that a polyline needs to stay within kStraightMm.
 void mark_needed(const std::vector<Point2>& points, std::vector<bool>& needed) {
@@ -62,6 +66,29 @@ class StrokeCutter {
       if (i > begin) cut_by_width(line, begin, i - 1);
       begin = i + 1;
     }
+  }
+
+  /// Lays a dot at the place that is farthest from the boundary, if that is wide enough.
+  void dot(const Polygon& polygon) {
+    const Box2 box = bounding_box({polygon});
+    const double extent_mm = distance(box.lower, box.upper);
+    if (extent_mm < rule_.min_dot_mm) return;
+    Point2 deepest = polygon.outer.front();
+    double radius_mm = 0;
+    for (const ChordalAxis::Chord& chord : chordal_axis(polygon, extent_mm / kDotSamples).chords) {
+      const double mm = edges_.distance_to_edge_mm(chord.middle, extent_mm).value_or(0);
+      if (mm <= radius_mm) continue;
+      radius_mm = mm;
+      deepest = chord.middle;
+    }
+    if (2 * radius_mm < rule_.min_dot_mm) return;
+    const double width_mm = std::min(2 * kDotShare * radius_mm, rule_.max_width_mm);
+    const bool is_level = box.upper.x - box.lower.x >= box.upper.y - box.lower.y;
+    // Both ends are inside: a bead has this much room around the place.
+    const double half_mm = radius_mm - width_mm / 2;
+    const Point2 half = is_level ? Point2{half_mm, 0} : Point2{0, half_mm};
+    strokes_.push_back(
+        {{snap(deepest - half) + origin_, snap(deepest + half) + origin_}, width_mm});
   }
 
  private:
@@ -190,10 +217,12 @@ std::vector<Stroke> centre_lines(const Polygons& thin, const CentreLineRule& rul
   for (const Polygon& polygon : without_thin_parts(near_origin, rule.min_width_mm)) {
     stop_if_asked(context);
     const Box2 box = bounding_box({polygon});
-    if (distance(box.lower, box.upper) < rule.min_length_mm) continue;
+    if (distance(box.lower, box.upper) < std::min(rule.min_length_mm, rule.min_dot_mm)) continue;
     const EdgeGrid edges({polygon});
     StrokeCutter cutter(rule, edges, origin, strokes);
+    const std::size_t before = strokes.size();
     for (const MiddleLine& line : middle_lines(polygon, edges, rule.max_width_mm)) cutter.cut(line);
+    if (strokes.size() == before) cutter.dot(polygon);
   }
   return strokes;
 }

@@ -121,6 +121,21 @@ TEST(CentreLines, BeadsStayInsideAndFillNarrowParts) {
   }
 }
 
+TEST(CentreLines, ACompactPartGetsADotIfThatIsAskedFor) {
+  const Polygons square{{test::rectangle(3, 4, 3.4, 4.4), {}}};
+  CentreLineRule rule = inscribed();
+  rule.min_length_mm = 1;
+  EXPECT_TRUE(lines_of(square, rule).empty());
+  rule.min_dot_mm = 0.35;
+  const std::vector<Stroke> strokes = lines_of(square, rule);
+  ASSERT_EQ(strokes.size(), 1U);
+  EXPECT_LT(distance(lerp(strokes[0].points[0], strokes[0].points[1], 0.5), {3.2, 4.2}), 0.03);
+  EXPECT_GE(strokes[0].width_mm, 0.28);
+  EXPECT_LE(farthest_outside_mm(square, strokes), 1e-5);
+  rule.min_dot_mm = 0.45;
+  EXPECT_TRUE(lines_of(square, rule).empty());
+}
+
 TEST(CentreLines, TheyMoveWithThePolygons) {
   const Point2 by{snap(137.3), snap(-61.7)};
   for (const TrialLayer& trial : routebench::trial_layers()) {
@@ -132,13 +147,15 @@ TEST(CentreLines, TheyMoveWithThePolygons) {
       for (Ring& hole : polygon.holes)
         for (Point2& p : hole) p = p + by;
     }
-    std::vector<Stroke> expected = lines_of(here);
+    CentreLineRule rule;
+    rule.min_dot_mm = 0.1;
+    std::vector<Stroke> expected = lines_of(here, rule);
     for (Stroke& stroke : expected)
       for (Point2& p : stroke.points) {
         EXPECT_EQ(p, snap(p));
         p = p + by;
       }
-    EXPECT_EQ(lines_of(there), expected) << trial.name;
+    EXPECT_EQ(lines_of(there, rule), expected) << trial.name;
   }
 }
 

@@ -19,12 +19,14 @@ struct CentreLineRule {
   double min_width_mm = 0.1;   ///< narrower places get none
   double max_width_mm = 0.6;   ///< wider places get a stroke of this width
   double min_length_mm = 0.2;  ///< shorter lines are left out
+  double min_dot_mm = 1e9;     ///< parts without a line, but at least so wide, get a dot
   CentreLineWidth width = CentreLineWidth::kMean;
 };
 
 /// Strokes along the middle of narrow polygons. Each has one width, so a line is cut where its
 /// width changes by more than a quarter; the pieces meet. So do the arms of a fork. Spurs into
-/// corners are left out, and a line ends half its width before the end of its part.
+/// corners are left out, and a line ends half its width before the end of its part. A dot is as
+/// short a stroke as fits beside its own width.
 ///
 /// Takes   polygons on the grid, in any frame: moving them moves the strokes by just that.
 /// Returns strokes inside the polygons, on the grid, in an order of no meaning.
