@@ -5,6 +5,7 @@
 
 #include "routebench/geometry/region.hpp"
 #include "routebench/planning/centre_lines.hpp"
+#include "routebench/planning/walls.hpp"
 
 namespace routebench::concentric {
 namespace {
@@ -12,6 +13,8 @@ namespace {
 // What beads leave is sought with beads so much wider: outlines that all but coincide are slow to
 // subtract, and what lies between them is noise.
 constexpr double kMarginMm = 0.03;
+// A square of a quarter of a millimetre: beads spread over it.
+constexpr double kLeastBareMm2 = 0.06;
 // Shorter lines in gaps, in widths of a line, are not worth a travel; in slivers, where there is
 // nothing else, they are.
 constexpr double kShortestInGap = 2;
@@ -36,6 +39,8 @@ CentreLineRule rule_for(double max_width_mm, const RingRule& rule, const PlanCon
 /// What is left of an area without all that lies within reach_mm of `laid`, but for noise. Corners
 /// up to the mitre limit count as reached.
 Polygons bare_part(const Polygons& area, const Polygons& laid, double reach_mm) {
+  // Most of the time there is nothing, which is soon told.
+  if (!laid.empty() && area_mm2(area) - grown_area_mm2(laid, reach_mm) < kLeastBareMm2) return {};
   const Polygons cores = subtract(area, offset(laid, reach_mm + kMarginMm));
   if (laid.empty() || cores.empty()) return cores;
   return intersect(offset(cores, kMarginMm), area);

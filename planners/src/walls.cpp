@@ -10,10 +10,22 @@
 #include "routebench/planning/centre_lines.hpp"
 
 namespace routebench {
-namespace {
+std::vector<Polygons> wall_regions(const Polygon& island, const PlanContext& context) {
+  std::vector<Polygons> regions;
+  double step_mm = context.line_width_mm / 2;
+  for (int wall = 0; wall < context.perimeters; ++wall) {
+    stop_if_asked(context);
+    // One wall at a time: an offset by many widths at once is far slower, and in narrow places
+    // another region.
+    Polygons inner =
+        regions.empty() ? offset({island}, -step_mm) : offset(regions.back(), -step_mm);
+    if (inner.empty()) break;
+    regions.push_back(std::move(inner));
+    step_mm = context.spacing_mm;
+  }
+  return regions;
+}
 
-/// Area of polygons grown by distance_mm with pointed corners, if no parts of them meet. Cost
-/// linear.
 double grown_area_mm2(const Polygons& polygons, double distance_mm) {
   constexpr double kSharpest = 1.75;  // of half a corner's turn, as a tangent: offsets cut it off
   double area = 0, length = 0, corners = 0;
@@ -30,24 +42,6 @@ double grown_area_mm2(const Polygons& polygons, double distance_mm) {
     }
   }
   return area + distance_mm * (length + distance_mm * corners);
-}
-
-}  // namespace
-
-std::vector<Polygons> wall_regions(const Polygon& island, const PlanContext& context) {
-  std::vector<Polygons> regions;
-  double step_mm = context.line_width_mm / 2;
-  for (int wall = 0; wall < context.perimeters; ++wall) {
-    stop_if_asked(context);
-    // One wall at a time: an offset by many widths at once is far slower, and in narrow places
-    // another region.
-    Polygons inner =
-        regions.empty() ? offset({island}, -step_mm) : offset(regions.back(), -step_mm);
-    if (inner.empty()) break;
-    regions.push_back(std::move(inner));
-    step_mm = context.spacing_mm;
-  }
-  return regions;
 }
 
 Polygons wall_gaps(const Polygons& polygons, const std::vector<Polygons>& regions, int count,

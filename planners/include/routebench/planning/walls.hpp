@@ -13,6 +13,11 @@ namespace routebench {
 /// is left or context.perimeters are there. Takes   an island in any frame.
 [[nodiscard]] std::vector<Polygons> wall_regions(const Polygon& island, const PlanContext& context);
 
+/// Area of polygons grown by distance_mm with pointed corners, as long as no parts of them meet and
+/// no holes close. Less than an area whose inset they are says that something narrow was lost; no
+/// offset is needed to know. Cost   linear.
+[[nodiscard]] double grown_area_mm2(const Polygons& polygons, double distance_mm);
+
 /// What `count` walls leave open before and between them: parts narrower than a line, and strips
 /// between walls in which no further one fits. What lies inside the last of them is none of it.
 ///
