@@ -68,7 +68,7 @@ class Builder {
   }
 
   [[nodiscard]] bool linked(std::uint32_t cell, std::size_t move) const {
-    return (links_[cell] >> move & 1U) != 0;
+    return (std::uint32_t{links_[cell]} >> move & 1U) != 0;
   }
   /// Adds a link or takes it away.
   void toggle(std::uint32_t from, std::uint32_t to, std::size_t move) {
