@@ -108,6 +108,21 @@ void lay_middles(const Polygons& parts, double widest_mm, bool dots, const RingR
   append(joined(std::move(strokes)), rings.centre_lines);
 }
 
+/// Lines in the middle between the sides of a loop that are too near for the next one and yet more
+/// than one and a half line distances apart: such a gap would be half empty.
+void lay_between(const Polygons& loops, const Polygons& next, const RingRule& rule,
+                 const PlanContext& context, Rings& rings) {
+  const double apart_mm = context.line_distance_mm();
+  if (area_mm2(loops) - grown_area_mm2(next, apart_mm) < apart_mm * apart_mm / 2) return;
+  const Polygons bare = bare_part(offset(loops, -apart_mm / 2), next, apart_mm / 2);
+  CentreLineRule lines = rule_for(apart_mm, rule, context);
+  lines.min_width_mm = apart_mm / 2;
+  lines.min_length_mm = apart_mm;
+  std::vector<Stroke> strokes = centre_lines(bare, lines, context);
+  for (Stroke& stroke : strokes) stroke.width_mm = context.line_width_mm;
+  append(joined(std::move(strokes)), rings.centre_lines);
+}
+
 /// Sparse: loops where the place between two walls or loops is at least so many line distances
 /// wide, else one line. That is as much as is demanded or a third off.
 constexpr double kLoopFromDistances = 1.5;
@@ -129,6 +144,7 @@ Rings sparse_rings(const Polygons& polygons, const RingRule& rule, const PlanCon
     if (i == 0) lay_slivers(bare_part(polygons, all[i], width_mm / 2), rule, context, rings);
     lay_middles(offset(lost, width_mm / 2), 2 * reach_mm + width_mm, i == 0 && loops.empty(), rule,
                 context, rings);
+    lay_between(all[i], i + 1 < all.size() ? all[i + 1] : Polygons{}, rule, context, rings);
     if (!loops.empty()) rings.insets.push_back(std::move(loops));
   }
   return rings;

@@ -215,5 +215,24 @@ TEST(Concentric, TheSeamIsWhereItIsAskedFor) {
     for (const Point2 p : stroke.points) EXPECT_GE(p.x, stroke.points[0].x);
 }
 
+TEST(Concentric, AGapThatWouldBeHalfEmptyGetsALineInTheMiddle) {
+  // The loops' sides are so many line distances apart; two more loops would need two of them.
+  const double apart_mm = kSpacing / 0.2;
+  const auto strokes_of_strip = [&](double gap_in_distances) {
+    const double height = kWidth + gap_in_distances * apart_mm;
+    return plan({{test::rectangle(0, 0, 60, height), {}}}, 0.2, {{"link", word("none")}}).strokes;
+  };
+  EXPECT_EQ(strokes_of_strip(1.4).size(), 1U);
+  const std::vector<Stroke> strokes = strokes_of_strip(1.8);
+  ASSERT_EQ(strokes.size(), 2U);
+  EXPECT_TRUE(is_loop(strokes[0]));
+  EXPECT_FALSE(is_loop(strokes[1]));
+  EXPECT_EQ(strokes[1].width_mm, kWidth);
+  for (const Point2 p : strokes[1].points) EXPECT_NEAR(p.y, (kWidth + 1.8 * apart_mm) / 2, 0.02);
+  EXPECT_EQ(
+      plan({{test::rectangle(0, 0, 60, kWidth + 1.8 * apart_mm), {}}}, 0.2, kLoops).strokes.size(),
+      1U);
+}
+
 }  // namespace
 }  // namespace routebench
