@@ -18,7 +18,7 @@ for name in "${names[@]}"; do
   page=results/reference/$name
   rm -rf "$page"
   mkdir -p "$page"
-  for figure in "results/$name/plots"/{outcomes,scatter,scaling,bars-travel_mm,bars-print_time_s}*.png; do
+  for figure in "results/$name/plots"/{outcomes,scatter,scaling}*.png; do
     [ ! -e "$figure" ] || cp "$figure" "$page/"
   done
   # Totals, without what only this machine knows.
