@@ -46,8 +46,8 @@ double grown_area_mm2(const Polygons& polygons, double distance_mm) {
 
 Polygons wall_gaps(const Polygons& polygons, const std::vector<Polygons>& regions, int count,
                    const PlanContext& context) {
-  // A stroke three times as long as wide, at a third of the width of a line.
-  const double least_mm2 = context.line_width_mm * context.line_width_mm / 3;
+  // The least stroke: half as long as a line is wide, and a third as wide.
+  const double least_mm2 = context.line_width_mm * context.line_width_mm / 6;
   // Each area holds the next one: what is open before a wall, and what that wall's beads reach. So
   // what lies in an odd number of them is a gap.
   std::vector<Ring> rings;
@@ -80,7 +80,7 @@ std::vector<Stroke> gap_lines(const Polygons& polygons, const std::vector<Polygo
   return centre_lines(wall_gaps(polygons, regions, count, context),
                       {.min_width_mm = narrowest_mm,
                        .max_width_mm = context.line_width_mm,
-                       .min_length_mm = context.line_width_mm,
+                       .min_length_mm = context.line_width_mm / 2,
                        .width = CentreLineWidth::kInscribed},
                       context);
 }
