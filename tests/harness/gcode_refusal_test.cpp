@@ -54,6 +54,8 @@ TEST(GcodeReader, MalformedInputIsRefusedWithItsLine) {
            Case{"G2 R4 E1", "ends where it begins"},
            Case{"G2 X5 I0 J0 E1", "the centre of the arc"},
            Case{"G2 X5 I4 E1", "not on its circle"},
+           Case{"G2 I-7777777777777 E1", "more than 1 km"},
+           Case{"G2 X5 R1000000000000000000000000000000 E1", "more than 1 km"},
            Case{"G2 X5 I2.5 P2 E1", "several turns"},
            Case{";WIDTH:wide", "the mark of a width is not a number"},
            Case{";HEIGHT:1e9", "the mark of a height is not a number"},

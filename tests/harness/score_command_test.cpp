@@ -152,6 +152,19 @@ TEST_F(ScoreCommand, AlsoUnderOtherTasksOrdersPoliciesAndFlavours) {
   same({}, {"--task", "line_width_mm=0.6", "--task", "layer_height_mm=0.3"});
 }
 
+TEST_F(ScoreCommand, TheRoutesOfEveryPlannerScoreTheSame) {
+  for (const json& planner : call({"planners", "--json"}).json()["planners"]) {
+    const std::string name = planner["name"];
+    const bool shell = planner["role"] == "shell";
+    const ProgramRun run = call(
+        {"plan", "shape:bracket", "--layers", "1..4", "--gcode", in_folder("a.gcode"), "--json",
+         "-", "--shell", shell ? name : "greedy_shell", "--fill", shell ? "rectilinear" : name});
+    ASSERT_LE(run.exit_code, 1) << run.err;
+    expect_same_scores(run.json(), score({"--model", "shape:bracket", "--layers", "1..4"}).json(),
+                       name + " ");
+  }
+}
+
 TEST_F(ScoreCommand, TheWallsOrTheFillingAloneAreAlignedToo) {
   for (const std::vector<std::string>& planner :
        {std::vector<std::string>{"--shell", "greedy_shell"},

@@ -43,6 +43,8 @@ void flatten(const Arc& arc, double tolerance_mm, const Place& place, std::vecto
   const double radius = std::sqrt(dot(first, first));
   const double last_radius = std::sqrt(dot(last, last));
   if (radius <= 0) place.refuse("the centre of the arc is where it begins");
+  constexpr double kLargestMm = 1e6;
+  if (!(radius <= kLargestMm)) place.refuse("the radius of the arc is more than 1 km");
   constexpr double kOffMm = 0.05;
   constexpr double kOffShare = 0.01;
   if (std::abs(last_radius - radius) > std::max(kOffMm, kOffShare * radius))
@@ -54,6 +56,8 @@ void flatten(const Arc& arc, double tolerance_mm, const Place& place, std::vecto
   if (turn <= 0) turn += kFullTurn;
 
   constexpr double kLongestChord = 0.1;  // of the radius: short arcs keep their length, too
+  constexpr double kFinest = 1e-6;       // of the radius: one line may not become a million chords
+  tolerance_mm = std::max(tolerance_mm, kFinest * radius);
   const double by_tolerance =
       tolerance_mm < radius ? 2 * std::acos(1 - tolerance_mm / radius) : kLongestChord;
   const double step = std::min(kLongestChord, by_tolerance);

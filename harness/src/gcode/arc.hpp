@@ -19,10 +19,11 @@ struct Arc {
 };
 
 /// Sets `points` to the ends of an arc's chords: the last is the arc's end, its start is not among
-/// them. Chords stay within tolerance_mm of the arc and are no longer than a tenth of its radius.
-/// Throws Error{kBadInput} for an arc without centre or radius or with both, for a radius of 0 or
-///        one that does not reach, and for an end that is off the circle by more than 0.05 mm and
-///        1 % of its radius.
+/// them. Chords stay within tolerance_mm (a millionth of the radius, if that is more) of the arc
+/// and are no longer than a tenth of its radius. Throws Error{kBadInput} for an arc without centre
+/// or radius or with both, for a radius of 0, of
+///        more than 1 km or that does not reach, and for an end that is off the circle by more than
+///        0.05 mm and 1 % of its radius.
 void flatten(const Arc& arc, double tolerance_mm, const Place& place, std::vector<Point2>& points);
 
 }  // namespace routebench::gcode
