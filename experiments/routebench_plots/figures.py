@@ -39,9 +39,8 @@ METRICS_OF_INTEREST = (
 """What gets bars and a column in the tables unless others are named."""
 
 _CURVES = ("travel_mm", "retractions")
-_RUNTIME = "plan_cpu_ns"
+_RUNTIME = scaling.TIME
 _COST = "travel_mm"
-_SIZE = "extrude_mm"
 _MODELS_PER_MATRIX = 30
 
 
@@ -200,7 +199,7 @@ def _metric_figures(
                 _titled(words, setting),
             ),
         )
-    size = results.metric(_SIZE)
+    size = results.metric(scaling.SIZE)
     if (
         size is not None
         and runtime is not None

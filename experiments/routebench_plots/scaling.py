@@ -17,6 +17,8 @@ from .sheet import LegendEntry, Sheet
 from .style import Look, looks
 from .tally import Tally
 
+SIZE = "extrude_mm"
+TIME = "plan_cpu_ns"
 FEWEST_MODELS = 4
 LEAST_RANGE = 10.0
 """Largest over smallest size below which an exponent says nothing."""

@@ -11,6 +11,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from . import scaling
 from .errors import PlotError
 from .quantities import in_sentence
 from .results import VALID, Item, Metric, Results
@@ -74,6 +75,8 @@ class Part:
     lines: list[Line]
     """The least travel first; contenders that share no model last."""
     misses: list[Miss]
+    growth: list[tuple[str, scaling.Fit]]
+    """Contenders with the power law of their planning time, if any."""
 
 
 def summary(results: Results, baseline: str | None = None) -> list[Part]:
@@ -104,6 +107,18 @@ def to_markdown(parts: Sequence[Part], experiment: str) -> str:
     for part in parts:
         lines += ["", f"## {markdown_text(part.setting or 'All models')}", ""]
         lines += _table(part)
+        if part.growth:
+            lines += [
+                "",
+                "Planning CPU time grows with the extruded length to the "
+                "power of (with 95 % interval, over models):",
+                "",
+            ]
+            lines += [
+                f"- {markdown_text(name)}: {scaling.exponent_text(law)}"
+                f" ({law.points} models)"
+                for name, law in part.growth
+            ]
         if part.misses:
             lines += ["", "Not valid:", ""]
             lines += [
@@ -143,8 +158,27 @@ def _part(results: Results, setting: Item, baseline: str | None) -> Part:
     ]
     lines.sort(key=_least_first)
     return Part(
-        setting.label, base.label, metrics, lines, _misses(results, setting)
+        setting.label,
+        base.label,
+        metrics,
+        lines,
+        _misses(results, setting),
+        _growth(results, setting),
     )
+
+
+def _growth(
+    results: Results, setting: Item
+) -> list[tuple[str, scaling.Fit]]:
+    size, time = results.metric(scaling.SIZE), results.metric(scaling.TIME)
+    if size is None or time is None:
+        return []
+    found = scaling.fits(results, setting, size, time)
+    return [
+        (contender.label, found[contender.row_id][1])
+        for contender in results.contenders
+        if contender.row_id in found
+    ]
 
 
 def _valid_models(results: Results, setting: Item, contender: Item) -> int:
