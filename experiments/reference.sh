@@ -12,7 +12,7 @@ program=build/release/bin/routebench
 
 for name in "${names[@]}"; do
   "$program" run "experiments/$name.toml" --out "results/$name" || [ $? -eq 1 ]
-  "$program" plot "results/$name" --formats png >/dev/null
+  "$program" plot "results/$name" --formats png --metrics travel_mm >/dev/null
   "$program" export "results/$name" >/dev/null
 
   page=results/reference/$name

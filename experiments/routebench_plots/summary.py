@@ -121,12 +121,7 @@ def to_markdown(parts: Sequence[Part], experiment: str) -> str:
             ]
         if part.misses:
             lines += ["", "Not valid:", ""]
-            lines += [
-                f"- {markdown_text(miss.contender)} on "
-                f"{markdown_text(miss.model)}: {miss.outcome}"
-                + (f", {markdown_text(miss.reason)}" if miss.reason else "")
-                for miss in part.misses
-            ]
+            lines += _missed(part)
     return "\n".join(lines) + "\n"
 
 
@@ -232,6 +227,26 @@ def _misses(results: Results, setting: Item) -> list[Miss]:
         for cell in results.slot(setting, model, contender).cells
         if cell.outcome != VALID
     ]
+
+
+def _missed(part: Part) -> list[str]:
+    """A line for each miss, or one for a contender that is valid nowhere."""
+    nowhere = {line.contender for line in part.lines if line.valid == 0}
+    lines = []
+    told = set()
+    for miss in part.misses:
+        if miss.contender in told:
+            continue
+        place = markdown_text(miss.model)
+        if miss.contender in nowhere:
+            told.add(miss.contender)
+            place = f"every model, such as {place}"
+        reason = f", {markdown_text(miss.reason)}" if miss.reason else ""
+        lines.append(
+            f"- {markdown_text(miss.contender)} on {place}: "
+            f"{miss.outcome}{reason}"
+        )
+    return lines
 
 
 def _table(part: Part) -> list[str]:

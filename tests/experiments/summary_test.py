@@ -75,7 +75,8 @@ class SummaryTest(PlotTestCase):
 
     def test_markdown_names_every_cell_that_is_not_valid(self) -> None:
         page = to_markdown(summary(self.results), "it")
-        self.assertEqual(page.count("off task, covered 0.5 \\< 0.95"), 4)
+        self.assertEqual(page.count("off task, covered 0.5 \\< 0.95"), 2)
+        self.assertIn("- hopeless on every model, such as easy: off", page)
         self.assertIn("| brave (baseline) | 3 of 3 | 1 (0 of 3) |", page)
         self.assertIn("choosy on h\\|ard", page)
 
