@@ -10,10 +10,18 @@ cmake --install "$build" --prefix "$work/prefix" >/dev/null
 # Moved, and without the libraries of the build folder: nothing may point back.
 mv "$work/prefix" "$work/moved"
 program=$work/moved/bin/routebench
-if ldd "$program" | grep -q "$build"; then
+libraries=$(ldd "$program")
+if [[ $libraries == *"$build"* ]]; then
   echo "plugin_project.sh: the installed program uses libraries of the build folder" >&2
   exit 1
 fi
+# Where these are missing, the program takes those of the source tree, if that is still there.
+for file in planner_template/cpp/planner.cpp routebench_plots/__main__.py; do
+  if [ ! -f "$work/moved/share/routebench/$file" ]; then
+    echo "plugin_project.sh: $file is not installed" >&2
+    exit 1
+  fi
+done
 
 start=$SECONDS
 "$program" new-planner my_rings "$work/my_rings"

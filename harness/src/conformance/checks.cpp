@@ -51,14 +51,19 @@ std::vector<ParamValue> corners(const ParamSchema& param) {
 }
 
 /// The defaults, all parameters at their first corner, all at their last, and, unless `few`, every
-/// parameter at each of its corners alone.
-std::vector<ParamSet> parameter_corners(const std::vector<ParamSchema>& schema, bool few) {
+/// parameter at each of its corners alone. What may make a planner do as its paper did stays out of
+/// the combinations: it may override the rest, and excuse it from staying inside.
+std::vector<ParamSet> parameter_corners(const Registry::Entry& entry, bool few) {
   std::vector<ParamSet> sets{{}};
-  if (schema.empty()) return sets;
+  if (entry.params.empty()) return sets;
   sets.resize(3);
-  for (const ParamSchema& param : schema) {
-    sets[1][param.name] = corners(param).front();
-    sets[2][param.name] = corners(param).back();
+  const std::vector<PlannerInfo::Setting>& faithful = entry.info.may_leave;
+  for (const ParamSchema& param : entry.params) {
+    if (std::none_of(faithful.begin(), faithful.end(),
+                     [&](const auto& setting) { return setting.param == param.name; })) {
+      sets[1][param.name] = corners(param).front();
+      sets[2][param.name] = corners(param).back();
+    }
     if (few) continue;
     for (const ParamValue& value : corners(param)) sets.push_back({{param.name, value}});
   }
@@ -139,7 +144,7 @@ std::optional<Breach> at_all_corners(const Registry& registry, const std::string
                                      const TrialLayer& trial, bool only_inside, Look&& look) {
   const Registry::Entry& entry = registry.at(name);
   const bool few = vertices_of(trial.layer) > kManyVertices;
-  for (const ParamSet& params : parameter_corners(entry.params, few)) {
+  for (const ParamSet& params : parameter_corners(entry, few)) {
     if (only_inside && leaves_as_published(entry.info, params)) continue;
     const auto planner = entry.make(params);
     for (const PlanContext& context : contexts(entry.info.role))
