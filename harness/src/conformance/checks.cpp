@@ -22,17 +22,8 @@ namespace {
 
 // Offsets are cleaned to 5 um, an opening is two of them.
 constexpr double kToleranceMm = 0.011;
-// On layers with more vertices planners may be slow, and corners of parameters much alike.
-constexpr std::size_t kManyVertices = 900;
-
-std::size_t vertices_of(const Layer& layer) {
-  std::size_t count = 0;
-  for (const Polygon& polygon : layer.polygons) {
-    count += polygon.outer.size();
-    for (const Ring& hole : polygon.holes) count += hole.size();
-  }
-  return count;
-}
+// Layers with more islands are slow, and much alike.
+constexpr std::size_t kManyIslands = 100;
 
 /// The corners of what a parameter allows.
 std::vector<ParamValue> corners(const ParamSchema& param) {
@@ -143,7 +134,7 @@ template <typename Look>
 std::optional<Breach> at_all_corners(const Registry& registry, const std::string& name,
                                      const TrialLayer& trial, bool only_inside, Look&& look) {
   const Registry::Entry& entry = registry.at(name);
-  const bool few = vertices_of(trial.layer) > kManyVertices;
+  const bool few = trial.layer.polygons.size() > kManyIslands;
   for (const ParamSet& params : parameter_corners(entry, few)) {
     if (only_inside && leaves_as_published(entry.info, params)) continue;
     const auto planner = entry.make(params);
