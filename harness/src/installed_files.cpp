@@ -8,8 +8,10 @@ namespace routebench {
 
 namespace fs = std::filesystem;
 
-fs::path data_folder(const std::string& name, const fs::path& source, const std::string& file) {
+fs::path data_folder(const std::string& name, const fs::path& place_in_source,
+                     const std::string& file) {
   std::error_code error;
+  const fs::path source = fs::path(ROUTEBENCH_SOURCE_FOLDER) / place_in_source;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
   const fs::path installed =
       (program.parent_path() / ROUTEBENCH_DATA_FROM_PROGRAM / name).lexically_normal();

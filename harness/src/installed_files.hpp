@@ -6,13 +6,14 @@
 
 namespace routebench {
 
-/// The folder `name` of an installed program's data, or else `source`, its place in the source tree
-/// that this program was built from.
+/// The folder `name` of an installed program's data, or else its place in the source tree that this
+/// program was built from.
 ///
-/// Takes  a file in the folder that tells it from any other.
+/// Takes  that place, relative to the tree's root, and a file in the folder that tells it from any
+///        other.
 /// Throws Error{kBadInput} naming both places if it is at neither.
 [[nodiscard]] std::filesystem::path data_folder(const std::string& name,
-                                                const std::filesystem::path& source,
+                                                const std::filesystem::path& place_in_source,
                                                 const std::string& file);
 
 }  // namespace routebench

@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <optional>
 
@@ -11,15 +10,7 @@ namespace routebench::test {
 
 /// The folder of shared test models: the environment variable ROUTEBENCH_MODELS, else
 /// `shared/models` beside the source tree; nothing if it is absent.
-inline std::optional<std::filesystem::path> models_dir() {
-  const char* named = std::getenv("ROUTEBENCH_MODELS");
-  const std::filesystem::path folder =
-      named != nullptr
-          ? std::filesystem::path(named)
-          : std::filesystem::path(ROUTEBENCH_SOURCE_DIR).parent_path() / "shared" / "models";
-  if (!std::filesystem::is_directory(folder)) return std::nullopt;
-  return folder;
-}
+[[nodiscard]] std::optional<std::filesystem::path> models_dir();
 
 }  // namespace routebench::test
 

@@ -94,7 +94,7 @@ void write_project(const NewPlannerArguments& arguments) {
     throw Error(ErrorKind::kBadInput,
                 folder.string() + ": is there already and not empty; name a new folder");
   const fs::path source =
-      data_folder("planner_template", ROUTEBENCH_TEMPLATE_SOURCE, "cpp/planner.cpp") / "cpp";
+      data_folder("planner_template", "planners/template", "cpp/planner.cpp") / "cpp";
   OutputSet outputs;
   outputs.add_folder(folder);
   for (const auto& [from, to] :

@@ -1,0 +1,16 @@
+#pragma once
+/// The part of the program that is Python: packages that read databases and draw.
+
+#include <string>
+#include <vector>
+
+namespace routebench {
+
+/// Runs a package of the folder experiments (or of the installed program's data) and waits for it.
+/// Ctrl-C reaches the package alone, which then cleans up behind itself.
+///
+/// Returns its exit code.
+/// Throws  Error{kBadInput} if it or Python is not there, Error{kInternal} if a signal ended it.
+int run_python_package(const std::string& package, const std::vector<std::string>& arguments);
+
+}  // namespace routebench
