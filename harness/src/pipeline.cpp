@@ -103,6 +103,11 @@ void add_plugin(PlannerSet& planners, const std::filesystem::path& file, bool by
   planners.plugins.push_back(std::move(record));
 }
 
+[[noreturn]] void refuse(const PluginRecord& plugin) {
+  throw Error(ErrorKind::kBadInput,
+              "plugin " + plugin.file + ": refused: " + plugin.refused_because);
+}
+
 /// A planner that is not there.
 class StandIn final : public Planner {
  public:
@@ -158,16 +163,14 @@ PlannerSet load_planners(std::span<const std::string> plugin_files) {
 
 void require_all_loaded(const PlannerSet& planners) {
   for (const PluginRecord& plugin : planners.plugins)
-    if (!plugin.loaded && plugin.by_name)
-      throw Error(ErrorKind::kBadInput,
-                  "plugin " + plugin.file + ": refused: " + plugin.refused_because);
+    if (!plugin.loaded && plugin.by_name) refuse(plugin);
 }
 
 void stand_in_for_refused(PlannerSet& planners, std::span<const ContenderSpec> contenders) {
   std::string reason, origin;
   for (const PluginRecord& plugin : planners.plugins) {
     if (plugin.loaded || !plugin.by_name) continue;
-    if (!std::filesystem::exists(plugin.file)) require_all_loaded(planners);
+    if (!std::filesystem::exists(plugin.file)) refuse(plugin);
     reason += "; plugin " + plugin.file + " was refused: " + plugin.refused_because;
     if (origin.empty()) origin = plugin.file;
   }
