@@ -26,8 +26,6 @@ struct Bad {
   std::vector<std::string> reason;  ///< words of it
 };
 
-void PrintTo(const Bad& bad, std::ostream* out) { *out << bad.name; }
-
 /// Bad files, by the name that a test gives them.
 const std::vector<Bad>& bad_plugins() {
   static const std::vector<Bad> all{
@@ -153,40 +151,41 @@ TEST_F(PluginFiles, AFileThatIsAskedForIsNotLookedAtAgain) {
 
 TEST_F(PluginFiles, ABadOneOnTheSearchPathIsAWarningElsewhere) {
   const fs::path file = place_in(folder_, "spoilt_exits");
-  const ProgramRun run = call({"plan", "shape:box?size=4", "--fill", "rectilinear", "--task",
-                               "density=1", "--layers", "3", "--jobs", "1"});
+  const ProgramRun run =
+      call({"plan", "shape:box?size=4", "--shell", "greedy_shell", "--fill", "rectilinear",
+            "--task", "density=1", "--layers", "3", "--jobs", "1"});
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_TRUE(run.err.starts_with("routebench: warning: plugin " + file.string() + ": refused: "))
       << run.err;
 }
 
-class BadPlugin : public PluginFiles, public testing::WithParamInterface<Bad> {};
-
-TEST_P(BadPlugin, AskedForByNameIsRefused) {
+TEST_F(PluginFiles, ABadOneThatIsAskedForIsRefused) {
   unsetenv("ROUTEBENCH_PLUGIN_PATH");
-  const fs::path file = place_in(folder_, GetParam().name);
-  const ProgramRun run = call({"plan", "shape:box", "--fill", "rectilinear", "--plugin", file});
-  EXPECT_EQ(run.exit_code, 2);
-  EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
-  for (const std::string& word : GetParam().reason)
-    EXPECT_NE(run.err.find(word), std::string::npos) << run.err << " lacks " << word;
+  for (const Bad& bad : bad_plugins()) {
+    SCOPED_TRACE(bad.name);
+    const fs::path file = place_in(folder_, bad.name);
+    const ProgramRun run = call({"plan", "shape:box", "--fill", "rectilinear", "--plugin", file});
+    EXPECT_EQ(run.exit_code, 2);
+    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+    for (const std::string& word : bad.reason)
+      EXPECT_NE(run.err.find(word), std::string::npos) << run.err << " lacks " << word;
+  }
 }
 
-TEST_P(BadPlugin, CostsAnExperimentOnlyWhatNeedsIt) {
+TEST_F(PluginFiles, ABadOneCostsAnExperimentOnlyWhatNeedsIt) {
   unsetenv("ROUTEBENCH_PLUGIN_PATH");
-  place_in(folder_, GetParam().name);
-  const std::string config = config_with(GetParam().name + ".so");
-  const ProgramRun run = call({"run", config, "--out", in_folder("out")});
-  EXPECT_EQ(run.exit_code, 1) << run.err;
-  EXPECT_TRUE(run.out.starts_with("2 cells: 1 valid, 1 failed\n")) << run.out;
-  for (const std::string& word : GetParam().reason)
-    EXPECT_NE(run.out.find(word), std::string::npos) << run.out << " lacks " << word;
-  EXPECT_NE(run.err.find("warning: plugin " + in_folder(GetParam().name)), std::string::npos)
-      << run.err;
+  for (const Bad& bad : bad_plugins()) {
+    SCOPED_TRACE(bad.name);
+    place_in(folder_, bad.name);
+    const std::string config = config_with(bad.name + ".so");
+    const ProgramRun run = call({"run", config, "--fresh", "--out", in_folder("out")});
+    EXPECT_EQ(run.exit_code, 1) << run.err;
+    EXPECT_TRUE(run.out.starts_with("2 cells: 1 valid, 1 failed\n")) << run.out;
+    for (const std::string& word : bad.reason)
+      EXPECT_NE(run.out.find(word), std::string::npos) << run.out << " lacks " << word;
+    EXPECT_NE(run.err.find("warning: plugin " + in_folder(bad.name)), std::string::npos) << run.err;
+  }
 }
-
-INSTANTIATE_TEST_SUITE_P(All, BadPlugin, testing::ValuesIn(bad_plugins()),
-                         [](const auto& test) { return test.param.name; });
 
 TEST_F(PluginFiles, WhereNothingWasRefusedAnUnknownPlannerIsAMistakeOfTheConfig) {
   fs::copy_file(ROUTEBENCH_TOY_PLUGIN, folder_ / "good.so");
