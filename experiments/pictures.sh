@@ -19,6 +19,6 @@ draw greedy_shell
 for fill in rectilinear concentric eulerian voxel; do draw "$fill" --fill "$fill"; done
 # The examples are plugins, which the tests build.
 plugins=${ROUTEBENCH_PLUGINS_FOLDER:-build/release/tests/planners/plugins}
-for fill in boustrophedon fermat_spirals; do
-  draw "$fill" --fill "$fill" --plugin "$plugins/$fill.so"
-done
+draw boustrophedon --fill boustrophedon --plugin "$plugins/boustrophedon.so"
+# So dense that there are spirals to be seen.
+draw fermat_spirals --fill fermat_spirals --plugin "$plugins/fermat_spirals.so" --task density=0.5
