@@ -31,7 +31,7 @@ if [ "${#commands[@]}" -lt 6 ]; then
   echo "plugin_project.sh: planners/README.md has no commands to run" >&2
   exit 1
 fi
-cp -r "$source/planners/examples" "$work/examples"
+cp -r "$work/moved/share/routebench/example_planners" "$work/examples"
 cd "$work"
 export PATH="$work/moved/bin:$PATH" CMAKE_PREFIX_PATH="$work/moved"
 unset ROUTEBENCH_PLUGIN_PATH
