@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# pictures.sh: draws the pictures of planners/README.md, one layer of a gear by each planner.
+# pictures.sh: draws the pictures of planners/README.md, one layer of a gear by each planner, examples
+# included.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -16,3 +17,8 @@ draw() {
 }
 draw greedy_shell
 for fill in rectilinear concentric eulerian voxel; do draw "$fill" --fill "$fill"; done
+# The examples are plugins, which the tests build.
+plugins=${ROUTEBENCH_PLUGINS_FOLDER:-build/release/tests/planners/plugins}
+draw boustrophedon --fill boustrophedon --plugin "$plugins/boustrophedon.so"
+# So dense that there are spirals to be seen.
+draw fermat_spirals --fill fermat_spirals --plugin "$plugins/fermat_spirals.so" --task density=0.5

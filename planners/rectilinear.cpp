@@ -23,8 +23,6 @@ enum class Sequence { kNearest, kZigzag };
 enum class Thin { kFill, kDrop };
 enum class Published { kNone, kDeKeyser, kSimpleSlicer };
 
-// Offsets wave by up to this where their outline is level (see region.hpp).
-constexpr double kWaveMm = 0.01;
 // Nearer to a line than this share of the spacing the boundary counts as laid: half the spacing is
 // how far a line has to reach anyway.
 constexpr double kReach = 0.6;
@@ -161,7 +159,9 @@ class Rectilinear final : public Planner {
     const double distance_mm = context.line_distance_mm() * sparser;
     HatchRule rule;
     rule.angle_deg = angle_deg;
-    rule.lines = lines_over(region, params, angle_deg, distance_mm, context);
+    rule.lines = params.fit && params.ends == Ends::kInset && context.density >= 1
+                     ? fitted_lines_over(region, angle_deg, context)
+                     : lines_over(region, angle_deg, distance_mm);
     rule.search = params.search;
     rule.min_length_mm = rules.min_length_mm;
     if (params.ends == Ends::kAlong) rule.end_gap_mm = rules.end_gap_mm;
@@ -184,32 +184,6 @@ class Rectilinear final : public Planner {
     if (params.link == Link::kFlows || params.ends == Ends::kAlong)
       return join_flows(hatch, rules.joints_may_leave ? nullptr : &region);
     return join_along_boundary(hatch, params.max_link * distance_mm);
-  }
-
-  static EvenLines lines_over(const Polygon& region, const RectilinearParams& params,
-                              double angle_deg, double distance_mm, const PlanContext& context) {
-    const Turn turn(angle_deg);
-    double low = turn.to_level(region.outer.front()).y, high = low;
-    for (const Point2 p : region.outer) {
-      low = std::min(low, turn.to_level(p).y);
-      high = std::max(high, turn.to_level(p).y);
-    }
-    if (params.fit && params.ends == Ends::kInset && context.density >= 1)
-      return fitted_lines(low, high, context);
-    // Multiples of the distance, so that lines of one layer lie over those of another.
-    const double first = std::ceil(low / distance_mm);
-    const double last = std::floor(high / distance_mm);
-    return {first * distance_mm, distance_mm, static_cast<std::uint32_t>(last - first + 1)};
-  }
-
-  /// The first and the last line on the region's edge, the others evenly between them: nearly a
-  /// spacing apart, and never more than a line's width.
-  static EvenLines fitted_lines(double low, double high, const PlanContext& context) {
-    const double inner_mm = high - low - 2 * kWaveMm;
-    if (inner_mm < context.spacing_mm / 2) return {(low + high) / 2, context.spacing_mm, 1};
-    const double gaps = std::max(std::round(inner_mm / context.spacing_mm),
-                                 std::ceil(inner_mm / context.line_width_mm));
-    return {low + kWaveMm, inner_mm / gaps, static_cast<std::uint32_t>(gaps) + 1};
   }
 
   RectilinearParams params_;

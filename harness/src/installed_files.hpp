@@ -16,4 +16,7 @@ namespace routebench {
                                                 const std::filesystem::path& place_in_source,
                                                 const std::string& file);
 
+/// The folder of an installed program in which plugins for all its users lie; it need not exist.
+[[nodiscard]] std::filesystem::path installed_plugin_folder();
+
 }  // namespace routebench

@@ -100,7 +100,12 @@ Json planners_document(const PlannerSet& planners) {
   for (const auto& [name, entry] : planners.registry.entries()) entries.push_back(json_of(entry));
   Json plugins = Json::array();
   for (const PluginRecord& plugin : planners.plugins) plugins.push_back(json_of(plugin));
-  return {{"planners", std::move(entries)}, {"plugins", std::move(plugins)}};
+  Json folders = Json::array();
+  for (const PluginFolder& folder : planners.folders)
+    folders.push_back({{"folder", folder.path}, {"exists", folder.exists}});
+  return {{"planners", std::move(entries)},
+          {"plugins", std::move(plugins)},
+          {"plugin_folders", std::move(folders)}};
 }
 
 }  // namespace routebench

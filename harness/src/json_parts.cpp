@@ -151,6 +151,7 @@ Json json_of(const Registry::Entry& entry) {
 
 Json json_of(const PluginRecord& plugin) {
   return {{"file", plugin.file},
+          {"by_name", plugin.by_name},
           {"loaded", plugin.loaded},
           {"refused_because", plugin.loaded ? Json(nullptr) : Json(plugin.refused_because)},
           {"build_id", plugin.build_id},

@@ -1,18 +1,14 @@
 #include "loops.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <utility>
 
 #include "routebench/geometry/edge_grid.hpp"
 #include "routebench/geometry/region.hpp"
-#include "routebench/geometry/vec.hpp"
 
 namespace routebench::concentric {
 namespace {
-
-constexpr std::size_t kPlaces = 16;  // of a ring from which it is looked at another
 
 Box2 box_of(const Ring& ring) { return bounding_box({{ring, {}}}); }
 
@@ -47,41 +43,6 @@ const Region* region_around(const Region& inner, const std::vector<Region>& outs
 }
 
 }  // namespace
-
-NearPlace nearest_place(const Ring& ring, Point2 p) {
-  NearPlace best;
-  double least = std::numeric_limits<double>::infinity();
-  for (std::uint32_t i = 0; i < ring.size(); ++i) {
-    const Point2 foot = nearest_on_segment(p, ring[i], ring[i + 1 < ring.size() ? i + 1 : 0]);
-    const double squared = squared_distance(p, foot);
-    if (squared >= least) continue;
-    least = squared;
-    best.place = {i, foot};
-  }
-  best.distance_mm = std::sqrt(least);
-  return best;
-}
-
-std::vector<RingPlace> spread_places(const Ring& ring, std::size_t count) {
-  const double step_mm = perimeter_mm(ring) / static_cast<double>(count);
-  std::vector<RingPlace> places;
-  double along_mm = 0;  // of the next place, from the edge's start
-  for (std::uint32_t i = 0; i < ring.size() && places.size() < count; ++i) {
-    const Point2 a = ring[i], b = ring[i + 1 < ring.size() ? i + 1 : 0];
-    const double edge_mm = distance(a, b);
-    for (; along_mm < edge_mm && places.size() < count; along_mm += step_mm)
-      places.push_back({i, lerp(a, b, along_mm / edge_mm)});
-    along_mm -= edge_mm;
-  }
-  return places;
-}
-
-double distance_of(const Ring& from, const Ring& to) {
-  double least = std::numeric_limits<double>::infinity();
-  for (const RingPlace& place : spread_places(from, kPlaces))
-    least = std::min(least, nearest_place(to, place.point).distance_mm);
-  return least;
-}
 
 LoopForest loop_forest(const std::vector<Polygons>& insets, double step_mm,
                        const PlanContext& context) {

@@ -26,20 +26,6 @@ struct LoopForest {
   std::vector<std::uint32_t> roots;
 };
 
-/// A place on a ring and how far it is from the point that asked for it.
-struct NearPlace {
-  RingPlace place;
-  double distance_mm = 0;
-};
-/// The place of a ring that is nearest to p. Cost   linear.
-[[nodiscard]] NearPlace nearest_place(const Ring& ring, Point2 p);
-
-/// Some places of a ring, spread along it.
-[[nodiscard]] std::vector<RingPlace> spread_places(const Ring& ring, std::size_t count);
-
-/// How near two rings come, seen from some places of `from`.
-[[nodiscard]] double distance_of(const Ring& from, const Ring& to);
-
 /// Takes   insets from the outermost inwards, step_mm apart.
 /// Cost    linear in points while a region has few holes.
 [[nodiscard]] LoopForest loop_forest(const std::vector<Polygons>& insets, double step_mm,

@@ -5,7 +5,7 @@
 
 #include "routebench/geometry/region.hpp"
 #include "routebench/geometry/vec.hpp"
-#include "walk.hpp"
+#include "routebench/planning/walk.hpp"
 
 namespace routebench::concentric {
 namespace {

@@ -24,7 +24,37 @@ Point2 unit_vector(double angle_deg) {
   return {std::cos(angle), std::sin(angle)};
 }
 
+// Offsets wave by up to this where their outline is level (see region.hpp).
+constexpr double kWaveMm = 0.01;
+
+/// Lowest and highest y of a region in a turned frame.
+std::array<double, 2> level_range(const Polygon& region, double angle_deg) {
+  const Turn turn(angle_deg);
+  double low = turn.to_level(region.outer.front()).y, high = low;
+  for (const Point2 p : region.outer) {
+    low = std::min(low, turn.to_level(p).y);
+    high = std::max(high, turn.to_level(p).y);
+  }
+  return {low, high};
+}
+
 }  // namespace
+
+EvenLines lines_over(const Polygon& region, double angle_deg, double distance_mm) {
+  const auto [low, high] = level_range(region, angle_deg);
+  const double first = std::ceil(low / distance_mm);
+  const double last = std::floor(high / distance_mm);
+  return {first * distance_mm, distance_mm, static_cast<std::uint32_t>(last - first + 1)};
+}
+
+EvenLines fitted_lines_over(const Polygon& region, double angle_deg, const PlanContext& context) {
+  const auto [low, high] = level_range(region, angle_deg);
+  const double inner_mm = high - low - 2 * kWaveMm;
+  if (inner_mm < context.spacing_mm / 2) return {(low + high) / 2, context.spacing_mm, 1};
+  const double gaps = std::max(std::round(inner_mm / context.spacing_mm),
+                               std::ceil(inner_mm / context.line_width_mm));
+  return {low + kWaveMm, inner_mm / gaps, static_cast<std::uint32_t>(gaps) + 1};
+}
 
 Turn::Turn(double angle_deg) : along_(unit_vector(angle_deg)) {}
 

@@ -1,9 +1,13 @@
 #include "routebench/planning/plugin.hpp"
 
+#include <cxxabi.h>
 #include <dlfcn.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <exception>
+#include <memory>
+#include <optional>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -34,21 +38,6 @@ std::string linker_complaint() {
   return complaint != nullptr ? complaint : "no reason given";
 }
 
-/// The plugin's entry point. The library is never closed, not even if it is refused later: objects
-/// of its making (an exception, say) may still be about.
-DescribePlugin open_library(const std::filesystem::path& file) {
-  // With a slash in its name the file itself is opened, and no folder is searched for it.
-  void* library = dlopen(std::filesystem::absolute(file).c_str(), RTLD_NOW | RTLD_LOCAL);
-  if (library == nullptr)
-    throw Refusal{"not a shared library of this system: " + linker_complaint()};
-  void* symbol = dlsym(library, kEntryPoint);
-  if (symbol == nullptr) {
-    throw Refusal{std::string("no routebench plugin: it lacks the symbol ") + kEntryPoint +
-                  " that ROUTEBENCH_REGISTER defines"};
-  }
-  return reinterpret_cast<DescribePlugin>(symbol);
-}
-
 void check_built_for_this_program(const PluginDescription& plugin) {
   if (plugin.abi != kPluginAbi) {
     throw Refusal{"plugin ABI " + std::to_string(plugin.abi) + ", but this program has " +
@@ -61,6 +50,46 @@ void check_built_for_this_program(const PluginDescription& plugin) {
                   std::string(ours) + "': C++ types cross the border, so these must agree"};
   }
   if (plugin.register_planners == nullptr) throw Refusal{"its description has no function to call"};
+}
+
+/// Writes C++ names as people do.
+std::string demangled(const std::string& symbol) {
+  int status = 0;
+  const std::unique_ptr<char, decltype(&std::free)> text(
+      abi::__cxa_demangle(symbol.c_str(), nullptr, nullptr, &status), &std::free);
+  return status == 0 ? text.get() : symbol;
+}
+
+/// What a library lacks that the linker could not open; nothing if that was not why.
+std::optional<std::string> missing_symbol(const std::string& complaint) {
+  constexpr std::string_view kMark = "undefined symbol: ";
+  const std::size_t mark = complaint.find(kMark);
+  if (mark == std::string::npos) return std::nullopt;
+  const std::size_t begin = mark + kMark.size();
+  return demangled(complaint.substr(begin, complaint.find_first_of(" ,\t\n", begin) - begin));
+}
+
+/// The plugin's entry point. The library is never closed, not even if it is refused later: objects
+/// of its making (an exception, say) may still be about.
+DescribePlugin open_library(const std::filesystem::path& file) {
+  // With a slash in its name the file itself is opened, and no folder is searched for it.
+  void* library = dlopen(std::filesystem::absolute(file).c_str(), RTLD_NOW | RTLD_LOCAL);
+  if (library == nullptr) {
+    const std::string complaint = linker_complaint();
+    const std::optional<std::string> missing = missing_symbol(complaint);
+    if (!missing) throw Refusal{"not a shared library of this system: " + complaint};
+    // Of another build? If its functions need not be there, it can be asked.
+    void* incomplete = dlopen(std::filesystem::absolute(file).c_str(), RTLD_LAZY | RTLD_LOCAL);
+    void* entry = incomplete != nullptr ? dlsym(incomplete, kEntryPoint) : nullptr;
+    if (entry != nullptr) check_built_for_this_program(reinterpret_cast<DescribePlugin>(entry)());
+    throw Refusal{"nothing defines " + *missing + ", which it uses"};
+  }
+  void* symbol = dlsym(library, kEntryPoint);
+  if (symbol == nullptr) {
+    throw Refusal{std::string("no routebench plugin: it lacks the symbol ") + kEntryPoint +
+                  " that ROUTEBENCH_REGISTER defines"};
+  }
+  return reinterpret_cast<DescribePlugin>(symbol);
 }
 
 std::vector<std::string> names_only_in(const Registry& now, const Registry& before) {

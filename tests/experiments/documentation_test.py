@@ -66,8 +66,13 @@ class TablesTest(unittest.TestCase):
 
     def test_every_planner_and_parameter_is_explained(self) -> None:
         page = (SOURCE / "planners" / "README.md").read_text(encoding="utf-8")
+        examples = []
+        for source in (SOURCE / "planners" / "examples").glob("*.cpp"):
+            plugin = PROGRAM.parents[1] / "tests" / "planners" / "plugins" / f"{source.stem}.so"
+            examples += ["--plugin", plugin]
+        self.assertGreater(len(examples), 2)
         listed = subprocess.run(
-            [PROGRAM, "planners", "--json"], capture_output=True, text=True, check=True
+            [PROGRAM, "planners", "--json", *examples], capture_output=True, text=True, check=True
         ).stdout
         planners = json.loads(listed)["planners"]
         self.assertGreater(len(planners), 1)

@@ -177,7 +177,7 @@ TEST_F(PlannersCommand, DescribesParametersAsTheyAreDeclared) {
 
 TEST_F(PlannersCommand, JsonHoldsPlannersAndPlugins) {
   const json document = call({"planners", "--json", "--plugin", kToys}).json();
-  EXPECT_EQ(keys_of(document), (std::set<std::string>{"planners", "plugins"}));
+  EXPECT_EQ(keys_of(document), (std::set<std::string>{"planners", "plugins", "plugin_folders"}));
   ASSERT_EQ(document["plugins"].size(), 1u);
   EXPECT_EQ(document["plugins"][0]["loaded"], true);
   EXPECT_TRUE(document["plugins"][0]["refused_because"].is_null());

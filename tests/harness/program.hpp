@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -41,6 +42,7 @@ class ProgramTest : public testing::Test {
     std::filesystem::create_directory(folder_);
     outside_ = folder_.string() + "_streams";
     std::filesystem::create_directory(outside_);
+    setenv("XDG_DATA_HOME", outside_.c_str(), 1);  // no plugins of the user's own
   }
   void TearDown() override {
     std::filesystem::remove_all(folder_);

@@ -1,9 +1,11 @@
 #!/usr/bin/env bash
-# plugin_project.sh BUILD_DIR: what an author of a plugin does with nothing but the installed package:
-# new-planner, build, check-planner, run, plot. Prints how long all but the compiler took.
+# plugin_project.sh BUILD_DIR SOURCE_DIR: what an author of a plugin does with nothing but the installed
+# package: the commands of planners/README.md, from new-planner to plot. Prints how long each of them
+# and all but the compiler took. Then builds and checks the example planners.
 set -euo pipefail
 
 build=$1
+source=$2
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cmake --install "$build" --prefix "$work/prefix" >/dev/null
@@ -23,17 +25,38 @@ for file in planner_template/cpp/planner.cpp routebench_plots/__main__.py; do
   fi
 done
 
-start=$SECONDS
-"$program" new-planner my_rings "$work/my_rings"
-cd "$work/my_rings"
-compile_start=$SECONDS
-cmake -B build -DCMAKE_PREFIX_PATH="$work/moved" >/dev/null
-cmake --build build >/dev/null
-compile=$((SECONDS - compile_start))
-(cd build && ctest --output-on-failure >/dev/null)
-"$program" check-planner my_rings --plugin build/my_rings.so
-"$program" run experiment.toml --out results
-"$program" plot results --formats png >plots.txt
-grep -q "summary.md" plots.txt
+# The page's first block of commands, one a line.
+mapfile -t commands < <(sed -n '/^```sh$/,/^```$/{/^```/!p;/^```$/q}' "$source/planners/README.md")
+if [ "${#commands[@]}" -lt 6 ]; then
+  echo "plugin_project.sh: planners/README.md has no commands to run" >&2
+  exit 1
+fi
+cp -r "$work/moved/share/routebench/example_planners" "$work/examples"
+cd "$work"
+export PATH="$work/moved/bin:$PATH" CMAKE_PREFIX_PATH="$work/moved"
+unset ROUTEBENCH_PLUGIN_PATH
+export XDG_DATA_HOME="$work/data"
+
+now() { date +%s%N; }
+seconds() { awk "BEGIN { printf \"%.1f\", $1 / 1e9 }"; }
+total=0
+for command in "${commands[@]}"; do
+  begin=$(now)
+  eval "$command" >"$work/output.txt"
+  took=$(($(now) - begin))
+  echo "$(seconds $took) s  $command"
+  [[ $command == cmake* ]] || total=$((total + took))
+done
+echo "without compiling: $(seconds $total) s"
 grep -qF "my\_rings" results/plots/summary.md
-echo "without compiling: $((SECONDS - start - compile)) s"
+
+# A plugin in the user's own folder is found without being named.
+mkdir -p "$XDG_DATA_HOME/routebench/plugins"
+cp build/my_rings.so "$XDG_DATA_HOME/routebench/plugins/"
+routebench planners my_rings >/dev/null
+
+cd "$work/examples"
+cmake -B build >/dev/null
+cmake --build build >/dev/null
+(cd build && ctest --output-on-failure >/dev/null)
+routebench run compare.toml --out results

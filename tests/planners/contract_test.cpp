@@ -1,6 +1,6 @@
-/// What every planner promises (planner.hpp), for every planner that is compiled in and every
-/// plugin named in the environment variable ROUTEBENCH_PLUGINS (files, separated by ':'): the
-/// checks of `routebench check-planner`.
+/// What every planner promises (planner.hpp), for every planner that is compiled in, the example
+/// plugins, and every plugin named in the environment variable ROUTEBENCH_PLUGINS (files, separated
+/// by ':'): the checks of `routebench check-planner`.
 
 #include <gtest/gtest.h>
 
@@ -32,6 +32,9 @@ const Planners& planners() {
   static const Planners all = [] {
     Planners found;
     register_builtin_planners(found.registry);
+    for (const char* example : {"boustrophedon", "fermat_spirals"})
+      found.plugins.push_back(load_plugin(
+          found.registry, std::string(ROUTEBENCH_TEST_PLUGINS) + "/" + example + ".so"));
     const char* files = std::getenv("ROUTEBENCH_PLUGINS");
     std::istringstream list(files != nullptr ? files : "");
     for (std::string file; std::getline(list, file, ':');)

@@ -175,6 +175,13 @@ void print_warnings(const std::string& model, const std::vector<std::string>& wa
     std::cerr << "routebench: warning: " << model << ": " << warning << '\n';
 }
 
+void print_refused(const PlannerSet& planners) {
+  for (const PluginRecord& plugin : planners.plugins)
+    if (!plugin.loaded)
+      std::cerr << "routebench: warning: plugin " << plugin.file
+                << ": refused: " << plugin.refused_because << '\n';
+}
+
 void print_rows(std::ostream& out, const std::vector<Row>& rows) {
   std::size_t label_width = 0, value_width = 0;
   for (const Row& row : rows) {

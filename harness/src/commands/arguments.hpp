@@ -10,6 +10,7 @@
 #include "routebench/harness/contender.hpp"
 #include "routebench/harness/metrics.hpp"
 #include "routebench/harness/output.hpp"
+#include "routebench/harness/pipeline.hpp"
 #include "routebench/harness/task.hpp"
 #include "routebench/planning/registry.hpp"
 
@@ -50,6 +51,9 @@ void write_json(OutputSet& outputs, const std::filesystem::path& file, const Jso
 
 /// Prints warnings of a model to the standard error, one line each.
 void print_warnings(const std::string& model, const std::vector<std::string>& warnings);
+
+/// Prints a warning for every plugin that was refused.
+void print_refused(const PlannerSet& planners);
 
 /// Label, value and unit of one line of a table for people.
 struct Row {

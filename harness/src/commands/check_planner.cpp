@@ -238,6 +238,7 @@ Json document_of(const Registry::Entry& entry, const std::vector<CheckResult>& r
 int check(const CheckArguments& arguments) {
   const PlannerSet planners = load_planners(arguments.plugins);
   require_all_loaded(planners);
+  print_refused(planners);
   const Registry::Entry& entry = planners.registry.at(arguments.name);
   const std::vector<CheckResult> results = run_checks(planners.registry, arguments.name);
   const std::vector<Step> ladder = climb(planners.registry, arguments.name);

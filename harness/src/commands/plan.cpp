@@ -69,6 +69,7 @@ class Plan {
         planners_(load_planners(arguments.plugins)),
         parallel_for_(parallel_loop(arguments.jobs)) {
     require_all_loaded(planners_);
+    print_refused(planners_);
     contender_.emplace(contender_of(arguments, planners_.registry), planners_.registry);
   }
 

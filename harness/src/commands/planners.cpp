@@ -57,8 +57,14 @@ void print_all(std::ostream& out, const PlannerSet& planners) {
     out << name << std::string(widest - name.size() + 2, ' ')
         << (entry.info.role == PlannerRole::kShell ? "shell  " : "fill   ") << entry.info.summary
         << " (" << entry.origin << ")\n";
-  for (const PluginRecord& plugin : planners.plugins)
-    if (!plugin.loaded) out << "refused: " << plugin.file << ": " << plugin.refused_because << '\n';
+  out << '\n';
+  for (const PluginFolder& folder : planners.folders)
+    out << "searched: " << folder.path << (folder.exists ? "" : " (is not there)") << '\n';
+  for (const PluginRecord& plugin : planners.plugins) {
+    std::string told = plugin.refused_because;
+    for (const std::string& name : plugin.planners) told += (told.empty() ? "" : ", ") + name;
+    out << (plugin.loaded ? "loaded: " : "refused: ") << plugin.file << ": " << told << '\n';
+  }
 }
 
 void list(const PlannersArguments& arguments) {

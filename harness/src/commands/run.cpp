@@ -62,13 +62,17 @@ PlannerSet planners_of(const ExperimentConfig& config, const Arguments& argument
   std::vector<std::string> files = config.plugins;
   files.insert(files.end(), arguments.plugins.begin(), arguments.plugins.end());
   PlannerSet planners = load_planners(files);
-  require_all_loaded(planners);
+  std::vector<ContenderSpec> contenders;
+  for (const ConfiguredContender& contender : config.contenders)
+    contenders.push_back(contender.spec);
+  stand_in_for_refused(planners, contenders);
   return planners;
 }
 
 int run(const Arguments& arguments) {
   const ExperimentConfig config = load_config(arguments.config);
   const PlannerSet planners = planners_of(config, arguments);
+  print_refused(planners);
   const RunLog log{&std::cerr, isatty(STDERR_FILENO) == 1};
   const RunSummary summary = run_experiment(config, planners, options_of(arguments, config), log);
   if (arguments.dry_run) return 0;

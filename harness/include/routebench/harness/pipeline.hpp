@@ -24,17 +24,33 @@
 
 namespace routebench {
 
+/// A folder of the search path of plugins.
+struct PluginFolder {
+  std::string path;
+  bool exists = false;
+};
+
 /// The planners of a program and the plugins that were looked at for them.
 struct PlannerSet {
   Registry registry;
-  std::vector<PluginRecord> plugins;  ///< one a file, in the order given, refused ones included
+  std::vector<PluginRecord> plugins;  ///< one a file, in the order in which they were looked at,
+                                      ///< refused ones included
+  std::vector<PluginFolder> folders;  ///< that were searched
 };
 
-/// Registers the built-in planners and then what the plugin files bring.
+/// Registers the built-in planners, then what the given plugin files bring, then what the files on
+/// the search path bring (see plugin_files.hpp). Each file is loaded in a process of its own first.
+/// Must be called while this process has no other thread.
 [[nodiscard]] PlannerSet load_planners(std::span<const std::string> plugin_files);
 
-/// Throws Error{kBadInput} naming the first plugin that was refused and why.
+/// Throws Error{kBadInput} naming the first plugin that was asked for and refused, and why.
 void require_all_loaded(const PlannerSet& planners);
+
+/// For contenders of an experiment: if plugins that were asked for have been refused, registers a
+/// planner for every name that nobody knows, which takes any parameters and fails with the refusal
+/// as its reason. So what needs a bad plugin fails, and the rest goes on. Throws Error{kBadInput}
+/// for a plugin that does not exist.
+void stand_in_for_refused(PlannerSet& planners, std::span<const ContenderSpec> contenders);
 
 struct SliceModelOptions {
   SliceMethod method = SliceMethod::kBucket;

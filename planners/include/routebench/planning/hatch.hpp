@@ -25,6 +25,15 @@ class Turn {
   Point2 along_;
 };
 
+/// Lines over a region at multiples of distance_mm in the turned frame, so that lines of one layer
+/// lie over those of another.
+[[nodiscard]] EvenLines lines_over(const Polygon& region, double angle_deg, double distance_mm);
+
+/// Lines over a region at density 1: the first and the last on its edge, the others evenly between
+/// them, nearly context.spacing_mm apart and never more than a line's width.
+[[nodiscard]] EvenLines fitted_lines_over(const Polygon& region, double angle_deg,
+                                          const PlanContext& context);
+
 /// How a hatch is laid.
 struct HatchRule {
   double angle_deg = 0;

@@ -33,6 +33,7 @@ struct PluginDescription {
 /// One file that was looked at.
 struct PluginRecord {
   std::string file;
+  bool by_name = true;  ///< asked for; else it was found on the search path
   bool loaded = false;
   std::string refused_because;  ///< empty if loaded
   std::string build_id;

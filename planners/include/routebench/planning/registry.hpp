@@ -80,6 +80,9 @@ class Registry {
                }});
   }
 
+  /// Adds a planner that is no class of this process. Throws Error{kBadInput} as add does.
+  void add_entry(Entry entry);
+
   /// Throws Error{kBadInput} with the nearest known name.
   [[nodiscard]] const Entry& at(const std::string& name) const;
   [[nodiscard]] const std::map<std::string, Entry>& entries() const noexcept { return entries_; }
@@ -89,8 +92,6 @@ class Registry {
   [[nodiscard]] const std::string& origin() const noexcept { return origin_; }
 
  private:
-  void add_entry(Entry entry);
-
   std::map<std::string, Entry> entries_;
   std::string origin_ = "built in";
 };

@@ -1,6 +1,7 @@
 #pragma once
 /// Ways along a ring.
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -21,6 +22,20 @@ struct RingPlace {
 /// no point twice in a row. From a place to itself it is once round. Cost   linear in its vertices.
 [[nodiscard]] std::vector<Point2> path_along(const Ring& ring, const RingPlace& from,
                                              const RingPlace& to);
+
+/// A place on a ring and how far it is from the point that asked for it.
+struct NearPlace {
+  RingPlace place;
+  double distance_mm = 0;
+};
+/// The place of a ring that is nearest to p. Cost   linear.
+[[nodiscard]] NearPlace nearest_place(const Ring& ring, Point2 p);
+
+/// Some places of a ring, spread along it.
+[[nodiscard]] std::vector<RingPlace> spread_places(const Ring& ring, std::size_t count);
+
+/// How near two rings come, seen from some places of `from`.
+[[nodiscard]] double distance_of(const Ring& from, const Ring& to);
 
 /// Length of a polyline, mm.
 [[nodiscard]] double length_mm(const std::vector<Point2>& points);

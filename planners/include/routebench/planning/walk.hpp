@@ -3,11 +3,10 @@
 
 #include <vector>
 
-#include "loops.hpp"
 #include "routebench/geometry/types.hpp"
 #include "routebench/planning/ring_path.hpp"
 
-namespace routebench::concentric {
+namespace routebench {
 
 /// The way from a place of a ring once round and back to it.
 class Walk {
@@ -38,4 +37,4 @@ class Walk {
 /// Appends a point, on the grid, unless the polyline ends there.
 void go_to(Point2 p, std::vector<Point2>& polyline);
 
-}  // namespace routebench::concentric
+}  // namespace routebench

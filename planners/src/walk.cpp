@@ -1,4 +1,4 @@
-#include "walk.hpp"
+#include "routebench/planning/walk.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include "routebench/geometry/grid.hpp"
 #include "routebench/geometry/vec.hpp"
 
-namespace routebench::concentric {
+namespace routebench {
 
 Walk::Walk(const Ring& ring, const RingPlace& from, bool forward)
     : points_(path_along(ring, from, from)) {
@@ -53,4 +53,4 @@ void go_to(Point2 p, std::vector<Point2>& polyline) {
   if (const Point2 q = snap(p); polyline.empty() || polyline.back() != q) polyline.push_back(q);
 }
 
-}  // namespace routebench::concentric
+}  // namespace routebench
