@@ -16,4 +16,8 @@ namespace routebench {
                                                 const std::filesystem::path& place_in_source,
                                                 const std::string& file);
 
+/// The folder of the Python package routebench, in which the host of Python planners lies.
+/// Throws Error{kBadInput} if it is not there.
+[[nodiscard]] std::filesystem::path python_package_folder();
+
 }  // namespace routebench

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include "process_planner.hpp"
 #include "routebench/geometry/error.hpp"
 #include "routebench/geometry/layer_io.hpp"
 #include "routebench/geometry/region.hpp"
@@ -103,8 +104,18 @@ PlannerSet load_planners(std::span<const std::string> plugin_files) {
   PlannerSet planners;
   register_builtin_planners(planners.registry);
   for (const std::string& file : plugin_files)
-    planners.plugins.push_back(load_plugin(planners.registry, file));
+    planners.plugins.push_back(is_python_plugin(file) ? load_python_plugin(planners.registry, file)
+                                                      : load_plugin(planners.registry, file));
   return planners;
+}
+
+void add_commands(PlannerSet& planners, std::span<const std::string> names,
+                  const std::filesystem::path& folder) {
+  for (const std::string& name : names) {
+    if (!is_command(name) || planners.registry.entries().contains(name)) continue;
+    planners.plugins.push_back(load_command(planners.registry, name, folder));
+    if (!planners.plugins.back().loaded) require_all_loaded(planners);
+  }
 }
 
 void require_all_loaded(const PlannerSet& planners) {

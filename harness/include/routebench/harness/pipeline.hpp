@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <span>
@@ -30,8 +31,17 @@ struct PlannerSet {
   std::vector<PluginRecord> plugins;  ///< one a file, in the order given, refused ones included
 };
 
-/// Registers the built-in planners and then what the plugin files bring.
+/// Registers the built-in planners and then what the plugin files bring: shared libraries, and
+/// Python files (.py).
 [[nodiscard]] PlannerSet load_planners(std::span<const std::string> plugin_files);
+
+/// Registers those of the names that are commands, such as "command:./my_planner --fast".
+///
+/// Takes  names of planners, others among them, and the folder in which the commands run; empty:
+///        the current one.
+/// Throws Error{kBadInput} naming the first command that is no planner and why.
+void add_commands(PlannerSet& planners, std::span<const std::string> names,
+                  const std::filesystem::path& folder = {});
 
 /// Throws Error{kBadInput} naming the first plugin that was refused and why.
 void require_all_loaded(const PlannerSet& planners);
