@@ -46,7 +46,7 @@ except ImportError as error:
 
 def load(file: Path) -> ModuleType:
     """Executes the file as a module of its own; what lies beside it can be imported."""
-    sys.path.insert(0, str(file.parent))
+    sys.path.append(str(file.parent))  # last: its own name may be that of a known module
     spec = importlib.util.spec_from_file_location(f"routebench_plugin_{file.stem}", file)
     if spec is None or spec.loader is None:
         raise Refusal(f"{file.name} is no Python file")
@@ -84,7 +84,9 @@ def planners_in(module: ModuleType) -> dict[str, type[Planner]]:
         if found.setdefault(value.name, value) is not value:
             raise Refusal(f"two of its classes are named {value.name}")
     if not found:
-        raise Refusal("it defines no class with a name that is derived from routebench.planner.Planner")
+        raise Refusal(
+            "it defines no class with a name that is derived from routebench.planner.Planner"
+        )
     return found
 
 
@@ -197,7 +199,9 @@ class Host:
         if isinstance(strokes, np.ndarray) and strokes.ndim == 3:
             strokes = list(strokes)
         if not isinstance(strokes, list):
-            raise Refusal(f"plan returned {type(strokes).__name__}; it must return a list of strokes")
+            raise Refusal(
+                f"plan returned {type(strokes).__name__}; it must return a list of strokes"
+            )
         answers = []
         for index, stroke in enumerate(strokes):
             try:

@@ -80,7 +80,9 @@ class Parameter:
 
 
 class _Number(Parameter):
-    def __init__(self, default: Any, lowest: Any, highest: Any, unit: str = "", help: str = "") -> None:
+    def __init__(
+        self, default: Any, lowest: Any, highest: Any, unit: str = "", help: str = ""
+    ) -> None:
         super().__init__(default, help, unit)
         self.lowest = lowest
         self.highest = highest
@@ -146,6 +148,8 @@ class Layer:
     z_mm: float
     height_mm: float
     polygons: tuple[Polygon, ...]
+    solid: tuple[Polygon, ...] = ()
+    """Of a sliced model: the part that must be dense. Planners get such parts by themselves."""
 
 
 @dataclass(frozen=True)
@@ -175,6 +179,8 @@ class Stroke:
     """Anything that numpy takes for an array of shape (n, 2)."""
     width_mm: float | None = None
     """The task's line width if None."""
+    kind: str | None = None
+    """In a finished plan: "wall", "dense" or "sparse"."""
 
 
 Strokes = Iterable[Union[Stroke, Points, Sequence[Sequence[float]]]]
