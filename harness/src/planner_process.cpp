@@ -145,7 +145,10 @@ std::int64_t cpu_ns_of(pid_t process) {
 
 }  // namespace
 
-PlannerProcess::PlannerProcess(const PlannerCommand& command) : owner_(getpid()) { start(command); }
+PlannerProcess::PlannerProcess(const PlannerCommand& command, Errors errors)
+    : what_errors_(errors), owner_(getpid()) {
+  start(command);
+}
 
 void PlannerProcess::start(const PlannerCommand& command) {
   Pipe input, output, errors, complaint;
@@ -192,19 +195,19 @@ void PlannerProcess::finish(int patience_ms) {
     }
     process_ = -1;
   }
-  forward_errors();
+  read_errors();
   for (int* stream : {&output_, &errors_})
     if (*stream >= 0) close(std::exchange(*stream, -1));
 }
 
-void PlannerProcess::forward_errors() {
+void PlannerProcess::read_errors() {
   std::string fresh;
   while (errors_ >= 0) {
     const ReadResult result = read_some(errors_, fresh);
     if (result == ReadResult::kEnd) close(std::exchange(errors_, -1));
     if (result != ReadResult::kSome) break;
   }
-  std::string_view left = fresh;
+  std::string_view left = what_errors_ == Errors::kPassOn ? fresh : std::string_view();
   while (!left.empty()) {
     const ssize_t written = write(STDERR_FILENO, left.data(), left.size());
     if (written < 0 && errno == EINTR) continue;
@@ -216,7 +219,7 @@ void PlannerProcess::forward_errors() {
 }
 
 std::string PlannerProcess::last_words() {
-  forward_errors();
+  read_errors();
   return last_line_of(said_);
 }
 
@@ -251,7 +254,7 @@ PlannerProcess::Answer PlannerProcess::ask(const std::string& request, const std
       answer.line = received_.substr(0, end);
       received_.erase(0, end + 1);
       ++lines_;
-      forward_errors();
+      read_errors();
       return answer;
     }
     searched = received_.size();
@@ -269,7 +272,7 @@ PlannerProcess::Answer PlannerProcess::ask(const std::string& request, const std
     std::array<pollfd, 3> watched{
         {{output_, POLLIN, 0}, {errors_, POLLIN, 0}, {to_write.empty() ? -1 : input_, POLLOUT, 0}}};
     poll(watched.data(), watched.size(), kPollMs);
-    if (watched[1].revents != 0) forward_errors();
+    if (watched[1].revents != 0) read_errors();
     if (watched[2].revents != 0) {
       const ssize_t written = write(input_, to_write.data(), to_write.size());
       // One that has closed its input may yet have answered; if not, its output tells.

@@ -29,11 +29,14 @@ struct PlannerCommand {
 /// that it must not be used, and its end there changes nothing.
 ///
 /// It has no open file but its three streams, dies with the process that uses it, and keeps the
-/// limits of that process. What it writes to its standard error is passed on to ours.
+/// limits of that process.
 class PlannerProcess {
  public:
+  enum class Errors { kPassOn, kKeep };
+
+  /// Takes  what becomes of its standard error beside its last words.
   /// Throws Error{kBadInput} if the program cannot be started.
-  explicit PlannerProcess(const PlannerCommand& command);
+  explicit PlannerProcess(const PlannerCommand& command, Errors errors = Errors::kPassOn);
   /// Closes its input and kills it if it does not end upon that.
   ~PlannerProcess();
   PlannerProcess(const PlannerProcess&) = delete;
@@ -65,10 +68,11 @@ class PlannerProcess {
 
  private:
   void start(const PlannerCommand& command);
-  void forward_errors();
+  void read_errors();
   [[noreturn]] void fail_dead();
   void finish(int patience_ms);
 
+  Errors what_errors_;
   pid_t owner_ = -1;
   pid_t process_ = -1;
   int input_ = -1;

@@ -38,7 +38,7 @@ Json object_in(const std::string& line) {
   if (!json.is_object()) refuse("it is JSON, but no object: " + excerpt(line));
   if (const auto error = json.find("error"); error != json.end()) {
     if (json.value("out_of_memory", Json(false)) == Json(true)) throw std::bad_alloc();
-    refuse(error->is_string() ? error->get<std::string>() : text_of(*error, true));
+    throw PlannerComplaint(error->is_string() ? error->get<std::string>() : text_of(*error, true));
   }
   return json;
 }

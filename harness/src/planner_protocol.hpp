@@ -6,11 +6,18 @@
 #include <vector>
 
 #include "plan_timing.hpp"
+#include "routebench/geometry/error.hpp"
 #include "routebench/planning/params.hpp"
 #include "routebench/planning/planner.hpp"
 #include "routebench/planning/registry.hpp"
 
 namespace routebench {
+
+/// What a planner's program says is wrong, in its own words.
+class PlannerComplaint : public Error {
+ public:
+  explicit PlannerComplaint(const std::string& message) : Error(ErrorKind::kBadInput, message) {}
+};
 
 /// One planner of a program, as it describes it.
 struct PlannerDescription {
@@ -25,7 +32,7 @@ struct ProgramDescription {
 };
 
 [[nodiscard]] std::string describe_request();
-/// Throws Error{kBadInput} saying what is wrong.
+/// Throws PlannerComplaint, or Error{kBadInput} saying what is wrong with the answer.
 [[nodiscard]] ProgramDescription read_description(const std::string& line);
 
 /// The layer and the nozzle's place are given relative to context.origin.
@@ -38,7 +45,7 @@ struct PlanAnswer {
 };
 
 /// Takes  the context of the request.
-/// Throws Error{kBadInput} saying what is wrong or what the planner complains about;
+/// Throws PlannerComplaint, or Error{kBadInput} saying what is wrong with the answer;
 ///        std::bad_alloc if it says that it has no more memory.
 [[nodiscard]] PlanAnswer read_route(const std::string& line, const PlanContext& context);
 

@@ -64,6 +64,8 @@ template <typename Read>
 auto understood(PlannerProcess& process, Read&& read) {
   try {
     return read();
+  } catch (const PlannerComplaint&) {
+    throw;
   } catch (const Error& error) {
     throw Error(ErrorKind::kBadInput, "line " + std::to_string(process.lines()) +
                                           " of its output: " + error.what() + process.last_words());
@@ -80,7 +82,8 @@ class PlannerProcesses {
 
   /// Starts a process just to hear what it says of itself.
   [[nodiscard]] ProgramDescription describe() const {
-    PlannerProcess process(command_);
+    // A refusal is one line, which has the last words.
+    PlannerProcess process(command_, PlannerProcess::Errors::kKeep);
     return greeted(process);
   }
 

@@ -19,9 +19,10 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any, TextIO
 
-_PACKAGE_PARENT = str(Path(__file__).resolve().parent.parent)
+# Not resolved: in a build folder the files are links, and the compiled part lies beside the links.
+_PACKAGE = Path(__file__).absolute().parent
 if sys.path and Path(sys.path[0] or ".").resolve() == Path(__file__).resolve().parent:
-    sys.path[0] = _PACKAGE_PARENT  # run as a file: its neighbours are no modules of their own
+    sys.path[0] = str(_PACKAGE.parent)  # run as a file: its neighbours are no modules of their own
 
 PROTOCOL = 1
 
@@ -41,7 +42,7 @@ try:
 
     _missing = ""
 except ImportError as error:
-    _missing = f"{error}; Python planners need numpy (package python3-numpy)"
+    _missing = f"{error}; planners in Python need numpy: install the package python3-numpy"
 
 
 def load(file: Path) -> ModuleType:
