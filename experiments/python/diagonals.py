@@ -1,7 +1,8 @@
-"""A planner with nothing but numpy: parallel lines at 45 degrees, every other one turned round."""
+"""A planner with numpy: parallel lines at 45 degrees, every other one turned round."""
 
 import numpy as np
 
+from routebench import offset
 from routebench.planner import Bool, Planner, Real
 
 ALONG = np.array([1.0, 1.0]) / np.sqrt(2)
@@ -21,29 +22,30 @@ def crossings(polygon, height):
 
 
 class Diagonals(Planner):
-    """Lines at 45 degrees through (0, 0), so that they meet from layer to layer."""
+    """A loop along the wall, and lines at 45 degrees through (0, 0) inside it."""
 
     name = "diagonals"
     role = "fill"
-    summary = "parallel lines at 45 degrees"
+    summary = "parallel lines at 45 degrees inside a loop"
     source = "an example"
 
-    end_gap = Real(1.0, 0.5, 3.0, unit="line widths", help="between a line's end and the wall")
+    lap = Real(0.35, 0.0, 1.0, unit="line widths", help="by which lines reach into the loop")
     turn = Bool(True, help="lay every other line backwards")
 
     def plan(self, layer, context):
-        """Lines of one polygon after those of another, in the order in which they lie."""
-        gap = self.end_gap * context.line_width_mm
-        step = context.line_distance_mm
-        for polygon in layer.polygons:
+        """Every loop first, then lines in the order in which they lie."""
+        width, step = context.line_width_mm, context.line_distance_mm
+        centre = offset(layer.polygons, -width / 2)
+        for polygon in centre:
+            for ring in polygon.rings:
+                yield np.vstack([ring, ring[:1]])
+        for polygon in offset(centre, -(1 - self.lap) * width):
             across = polygon.outer @ ACROSS
-            first = int(np.ceil((across.min() + gap) / step))
-            last = int(np.floor((across.max() - gap) / step))
-            for k in range(first, last + 1):
+            for k in range(int(np.ceil(across.min() / step)), int(across.max() // step) + 1):
                 places = crossings(polygon, k * step)
                 lines = [
-                    np.array([enter + gap, leave - gap])[:, None] * ALONG + k * step * ACROSS
+                    np.array([enter, leave])[:, None] * ALONG + k * step * ACROSS
                     for enter, leave in zip(places[::2], places[1::2])
-                    if leave - enter > 3 * gap
+                    if leave - enter > width / 2
                 ]
                 yield from (line[::-1] for line in lines[::-1]) if self.turn and k % 2 else lines

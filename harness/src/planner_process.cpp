@@ -28,8 +28,10 @@ using Clock = std::chrono::steady_clock;
 
 /// How soon a wish to stop is noticed.
 constexpr int kPollMs = 20;
-/// How long a process that was told to end may take before it is killed.
+/// How long a process that was told to end may take before it is killed, and how long one that has
+/// closed its output may take to end by itself, so that it can be told how it did.
 constexpr int kPatienceMs = 500;
+constexpr int kLastPatienceMs = 5000;
 constexpr std::size_t kLastWordsBytes = 2000;
 /// More than any honest route: what never ends a line must not fill our memory.
 constexpr std::size_t kMostLineBytes = std::size_t{1} << 31;
@@ -224,7 +226,7 @@ std::string PlannerProcess::last_words() {
 }
 
 void PlannerProcess::fail_dead() {
-  const std::optional<int> status = ended(process_, kPatienceMs);
+  const std::optional<int> status = ended(process_, kLastPatienceMs);
   if (status) process_ = -1;
   const char* const where =
       received_.empty() ? " before it answered" : " in the middle of a line of its output";

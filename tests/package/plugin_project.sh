@@ -23,6 +23,14 @@ for file in planner_template/cpp/planner.cpp routebench_plots/__main__.py; do
   fi
 done
 
+PYTHONPATH=$work/moved/lib/python3.11/dist-packages /usr/bin/python3 -B -c "import routebench
+if not routebench.__file__.startswith('$work/moved/'):
+    raise SystemExit('plugin_project.sh: not the installed module: ' + routebench.__file__)
+routebench.plan(routebench.slice_model('shape:box'), 'greedy_shell')"
+"$program" new-planner my_python "$work/my_python" --python
+"$program" plan shape:box --fill my_python --plugin "$work/my_python/my_python.py" \
+  --task perimeters=0 --task density=1 >/dev/null
+
 start=$SECONDS
 "$program" new-planner my_rings "$work/my_rings"
 cd "$work/my_rings"

@@ -39,7 +39,7 @@ fill = {{ planner = "concentric" }}
 def rings_of_wkt(text: str) -> list[np.ndarray]:
     """The rings of a MULTIPOLYGON, without their repeated first points."""
     return [
-        np.array([[float(word) for word in pair.split()] for pair in ring.split(",")])[:-1]
+        np.array([[float(word) for word in point.split()[:2]] for point in ring.split(",")])[:-1]
         for ring in re.findall(r"\(([^()]+)\)", text)
     ]
 
@@ -155,7 +155,7 @@ class PlannersTest(unittest.TestCase):
     """Planners in Python, with the module and without a program."""
 
     def test_a_python_planner_plans_beside_the_others(self) -> None:
-        model = routebench.slice_model("shape:box?size=6", perimeters=0, skin_layers=0)
+        model = routebench.slice_model("shape:box?size=6", perimeters=0, density=1)
         fill = {"planner": "py_culprit", "crime": "none"}
         plans = [
             routebench.plan(model, None, fill, plugins=[CULPRIT], jobs=jobs) for jobs in (1, 2)

@@ -21,7 +21,7 @@ gate_deposit_max = 2
 gate_deposit_min = 0.5
 [run]
 repetitions = 2
-timeout_s = 6
+timeout_s = 15
 memory_mb = 600
 """
 
@@ -67,7 +67,7 @@ class CellsTest(FolderTest):
             "width": ("failed", place + "stroke 0 has no number as width_mm"),
             "thin": ("failed", place + "stroke 0 of the returned route has the width -1"),
             "write": ("failed", place + "ValueError: assignment destination is read-only"),
-            "loop": ("timed_out", "^no result after 6 s while planning layer 1"),
+            "loop": ("timed_out", "^no result after 15 s while planning layer 1"),
             "exit": ("crashed", place + "its process ended with exit code 3 before it answered"),
             "kill": ("crashed", place + "its process died of SIGSEGV .*it last wrote: farewell"),
             "hoard": ("out_of_memory", "^more than 600 MB wanted while planning layer 1"),
@@ -92,7 +92,7 @@ class CellsTest(FolderTest):
             "list": ("failed", place + r"line 3 of its output: it is JSON, but no object"),
             "nothing": ("failed", place + 'line 3 of its output: the list "strokes" is missing'),
             "complain": ("failed", place + "this layer is ugly"),
-            "silent": ("timed_out", "^no result after 6 s while planning layer 1"),
+            "silent": ("timed_out", "^no result after 15 s while planning layer 1"),
             "close": ("crashed", place + "its process closed its output before it answered"),
             "point": ("failed", place + "line 3 .*stroke 0: point 1 is no pair of numbers"),
             "far": ("failed", place + "stroke 0 .* within a kilometre"),
@@ -245,7 +245,7 @@ class PlanTest(FolderTest):
     def test_no_process_is_left_behind(self) -> None:
         name = "left_behind_planner.py"
         (self.folder / name).write_text(CULPRIT.read_text(encoding="utf-8"), encoding="utf-8")
-        config = HEAD.format(plugins=f'plugins = ["{name}"]').replace("timeout_s = 6", "timeout_s = 2")
+        config = HEAD.format(plugins=f'plugins = ["{name}"]').replace("timeout_s = 15", "timeout_s = 2")
         config += '[[contender]]\nname = "a"\nfill = { planner = "py_culprit", crime = "loop" }\n'
         self.run_experiment(config, expect=1)
         listed = subprocess.run(["ps", "-eo", "args"], capture_output=True, text=True, check=True)

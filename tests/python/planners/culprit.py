@@ -92,7 +92,7 @@ class Culprit(Planner):
         return strokes
 
     def do_chatter(self, strokes, layer):
-        for i in range(50_000):
+        for i in range(10_000):
             print("la la la", i)
         return strokes
 
