@@ -22,11 +22,11 @@ def crossings(polygon, height):
 
 
 class Diagonals(Planner):
-    """A loop along the wall, and lines at 45 degrees through (0, 0) inside it."""
+    """Lines at 45 degrees through (0, 0); what must be dense gets a loop round them."""
 
     name = "diagonals"
     role = "fill"
-    summary = "parallel lines at 45 degrees inside a loop"
+    summary = "parallel lines at 45 degrees"
     source = "an example"
 
     lap = Real(0.35, 0.0, 1.0, unit="line widths", help="by which lines reach into the loop")
@@ -35,11 +35,13 @@ class Diagonals(Planner):
     def plan(self, layer, context):
         """Every loop first, then lines in the order in which they lie."""
         width, step = context.line_width_mm, context.line_distance_mm
-        centre = offset(layer.polygons, -width / 2)
-        for polygon in centre:
-            for ring in polygon.rings:
-                yield np.vstack([ring, ring[:1]])
-        for polygon in offset(centre, -(1 - self.lap) * width):
+        region = offset(layer.polygons, -width / 2)
+        if context.density == 1:
+            for polygon in region:
+                for ring in polygon.rings:
+                    yield np.vstack([ring, ring[:1]])
+            region = offset(region, -(1 - self.lap) * width)
+        for polygon in region:
             across = polygon.outer @ ACROSS
             for k in range(int(np.ceil(across.min() / step)), int(across.max() // step) + 1):
                 places = crossings(polygon, k * step)

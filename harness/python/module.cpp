@@ -46,7 +46,8 @@ auto without_lock(Work&& work) {
     break;
   }
   released.reset();
-  if (PyErr_Occurred() != nullptr) throw py::error_already_set();
+  // Ctrl-C may have ended the planner's own process, too: then that is no error of its.
+  if (PyErr_Occurred() != nullptr || PyErr_CheckSignals() != 0) throw py::error_already_set();
   return result.get();
 }
 

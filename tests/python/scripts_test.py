@@ -5,7 +5,7 @@ import subprocess
 import sys
 import unittest
 
-from support import PROGRAM, SOURCE, FolderTest
+from support import MODELS, PROGRAM, SOURCE, FolderTest
 
 SCRIPTS = SOURCE / "experiments" / "python"
 
@@ -43,6 +43,30 @@ class ScriptsTest(FolderTest):
             "check-planner", "diagonals", "--plugin", SCRIPTS / "diagonals.py", "--json", "-"
         )
         self.assertEqual([c["name"] for c in checked["checks"] if c["failures"]], [])
+
+    @unittest.skipUnless(MODELS.is_dir(), f"no real models at {MODELS}")
+    def test_the_example_planner_does_its_task_on_a_real_part(self) -> None:
+        said = self.run_experiment(
+            f"""
+name = "real"
+models = ["{MODELS}/functional/mk3_x_carriage.stl"]
+plugins = ["{SCRIPTS}/diagonals.py"]
+[task]
+layer_height_mm = 0.3
+[run]
+repetitions = 1
+[[contender]]
+name = "diagonals"
+shell = {{ planner = "greedy_shell" }}
+fill = {{ planner = "diagonals" }}
+[[contender]]
+name = "rectilinear"
+shell = {{ planner = "greedy_shell" }}
+fill = {{ planner = "rectilinear" }}
+""",
+            expect=0,
+        )
+        self.assertIn("diagonals: valid", said)
 
 
 if __name__ == "__main__":

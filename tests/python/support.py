@@ -10,6 +10,8 @@ from pathlib import Path
 PROGRAM = Path(os.environ["ROUTEBENCH_PROGRAM"])
 PLANNERS = Path(__file__).parent / "planners"
 SOURCE = Path(__file__).resolve().parents[2]
+MODELS = Path(os.environ.get("ROUTEBENCH_MODELS", SOURCE.parent / "shared" / "models"))
+"""Real meshes, which are not in the repository; see tests/support/models.hpp."""
 
 
 class FolderTest(unittest.TestCase):

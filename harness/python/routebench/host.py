@@ -11,6 +11,7 @@ import importlib.util
 import json
 import os
 import platform
+import signal
 import sys
 import time
 import traceback
@@ -239,6 +240,7 @@ def own_streams() -> tuple[TextIO, TextIO]:
 
 def main() -> int:
     """Answers until the input ends."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)  # Ctrl-C ends it without a word
     requests, answers = own_streams()
 
     def say(answer: dict[str, Any]) -> None:
