@@ -29,7 +29,8 @@ print(f"{len(list(Diagonals().plan(layer, context)))} lines on layer {layer.inde
 # On the whole model, with walls, and judged.
 model = routebench.slice_model("shape:hotend")
 plugins = [str(HERE / "diagonals.py")]
-plan = routebench.plan(model, "greedy_shell", {"planner": "diagonals", "turn": True}, plugins=plugins)
+fill = {"planner": "diagonals", "turn": True}
+plan = routebench.plan(model, "greedy_shell", fill, plugins=plugins)
 score = routebench.score(plan)
 print(f"{score.outcome}, travel {score.totals['travel_mm']:.0f} mm {score.reason}")
 

@@ -14,7 +14,7 @@ cells = routebench.read_results(sys.argv[1])
 valid = cells[cells["outcome"] == "valid"]
 table = valid.pivot_table(index="model", columns="contender", values="travel_mm") / 1000
 axes = table.plot.barh(figsize=(7, 1.2 + 0.8 * len(table)), width=0.8, colormap="cividis")
-axes.set_xlabel("travel [m], lower is better")
+axes.set_xlabel("travel [m], mean over the tasks, lower is better")
 axes.set_ylabel("")
 axes.legend(title="contender", loc="upper left", bbox_to_anchor=(1, 1))
 axes.figure.savefig(sys.argv[2], dpi=150, bbox_inches="tight")

@@ -91,7 +91,8 @@ class SameTest(FolderTest):
                 plan = routebench.plan(model, "greedy_shell", fill, jobs=2)
                 (cell,) = database.execute(
                     "SELECT cell_id FROM cell JOIN contender USING(contender_id) JOIN setting"
-                    " USING(setting_id) WHERE name = ? AND json_extract(task_json, '$.density') = ?",
+                    " USING(setting_id) WHERE name = ?"
+                    " AND json_extract(task_json, '$.density') = ?",
                     (name, density),
                 ).fetchone()
                 self.compare_routes(database, cell, plan)
@@ -109,7 +110,9 @@ class SameTest(FolderTest):
                 self.assertEqual(len(rings), len(rings_of_wkt(wkt)))
         self.assertEqual(compared, 4)
 
-    def compare_routes(self, database: sqlite3.Connection, cell: int, plan: routebench.Plan) -> None:
+    def compare_routes(
+        self, database: sqlite3.Connection, cell: int, plan: routebench.Plan
+    ) -> None:
         rows = database.execute(
             "SELECT layer_index, strokes_json FROM route WHERE cell_id = ? ORDER BY layer_index",
             (cell,),
@@ -166,6 +169,19 @@ class PlannersTest(unittest.TestCase):
         self.assertGreater(len(plans[0].strokes(0)), 3)
         self.assertIn("py_culprit", routebench.planners([CULPRIT]))
         self.assertNotIn("py_culprit", routebench.planners())
+
+    def test_coordinates_cross_the_border_bit_for_bit(self) -> None:
+        model = routebench.slice_model("shape:gear?size=47.3")
+        plugins = [str(PLANNERS / "echo.py")]
+        plan = routebench.plan(model, "echo", order="stage", plugins=plugins)
+        rings = 0
+        for place, layer in enumerate(model.layers):
+            expected = [ring for polygon in layer.polygons for ring in polygon.rings]
+            for stroke, ring in zip(plan.strokes(place), expected, strict=True):
+                self.assertTrue(np.array_equal(stroke.points[:-1], ring))
+                self.assertTrue(np.array_equal(stroke.points[-1], ring[0]))
+                rings += 1
+        self.assertGreater(rings, len(model))
 
     def test_offset_and_order(self) -> None:
         ring = np.array([[0, 0], [10, 0], [10, 10], [0, 10.0]])
@@ -261,7 +277,9 @@ class ErrorsTest(FolderTest):
         self.assertIn("no planner", self.refusal(plan, model))
         self.assertIn("lacks the key planner", self.refusal(plan, model, fill={"angle_deg": 3}))
         self.assertIn("must be a planner's name", self.refusal(plan, model, fill=3))
-        self.assertIn("layer 9999 is not there", self.refusal(plan, model, fill="voxel", layers=[9999]))
+        self.assertIn(
+            "layer 9999 is not there", self.refusal(plan, model, fill="voxel", layers=[9999])
+        )
         self.assertIn("refused", self.refusal(plan, model, fill="x", plugins=["missing.py"]))
         finished = plan(model, "greedy_shell")
         self.assertIn("did you mean", self.refusal(routebench.score, finished, retract=1))

@@ -245,7 +245,8 @@ class PlanTest(FolderTest):
     def test_no_process_is_left_behind(self) -> None:
         name = "left_behind_planner.py"
         (self.folder / name).write_text(CULPRIT.read_text(encoding="utf-8"), encoding="utf-8")
-        config = HEAD.format(plugins=f'plugins = ["{name}"]').replace("timeout_s = 15", "timeout_s = 2")
+        config = HEAD.format(plugins=f'plugins = ["{name}"]')
+        config = config.replace("timeout_s = 15", "timeout_s = 2")
         config += '[[contender]]\nname = "a"\nfill = { planner = "py_culprit", crime = "loop" }\n'
         self.run_experiment(config, expect=1)
         listed = subprocess.run(["ps", "-eo", "args"], capture_output=True, text=True, check=True)

@@ -17,6 +17,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from . import planner
 from .results import read_results
 
 try:
@@ -60,6 +61,7 @@ __all__ = [
     "nearest_first",
     "offset",
     "plan",
+    "planner",
     "planners",
     "read_results",
     "score",

@@ -1,7 +1,7 @@
-"""Speaks for the planners of a Python file: requests on the standard input, answers on the output.
+"""Speaks for the planners of a Python file: requests on standard input, answers on output.
 
-``routebench`` starts it by itself for every plugin that is a Python file. Under another Python, with
-routebench's Python folder in PYTHONPATH, it serves as a command:
+``routebench`` starts it by itself for every plugin that is a Python file. Under another Python,
+with routebench's Python folder in PYTHONPATH, it serves as a command:
 ``fill = { command = "my_env/bin/python -m routebench.host my_planner.py" }``.
 """
 

@@ -29,7 +29,8 @@ _SCORES = """
                              AND cell_score.metric = metric.name
     ORDER BY position"""
 
-_LAYERS = "SELECT layer_score.* FROM current_cell JOIN layer_score USING(cell_id) ORDER BY layer_index"
+_LAYERS = """
+    SELECT layer_score.* FROM current_cell JOIN layer_score USING(cell_id) ORDER BY layer_index"""
 
 _TIMINGS = """
     SELECT cell_id, repetition, plan_wall_ns, plan_cpu_ns
@@ -60,7 +61,9 @@ def read_results(results: str | Path, form: str = "wide") -> pandas.DataFrame:
     try:
         import pandas
     except ImportError as error:
-        raise ImportError("read_results needs pandas: install the package python3-pandas") from error
+        raise ImportError(
+            "read_results needs pandas: install the package python3-pandas"
+        ) from error
 
     with _Database(_file_of(Path(results))) as database:
         cells = pandas.DataFrame(**database.table(_CELLS))

@@ -1,4 +1,4 @@
-"""A planner in Python that hatches its layers, and misbehaves on layer 1 in the way it is told to."""
+"""A planner in Python that hatches its layers, and misbehaves on layer 1 as it is told to."""
 
 import os
 import signal
