@@ -108,8 +108,8 @@ std::optional<SlotSpec> slot_of(const py::object& given, const char* slot) {
     throw Error(ErrorKind::kBadUsage,
                 std::string(slot) + " must be a planner's name or a dict with the key planner");
   SlotSpec spec{"", params_of(given.cast<py::dict>())};
-  for (const auto& [key, prefix] :
-       {std::pair<std::string, std::string>{"planner", ""}, {"command", std::string(kCommandPrefix)}})
+  for (const auto& [key, prefix] : {std::pair<std::string, std::string>{"planner", ""},
+                                    {"command", std::string(kCommandPrefix)}})
     if (const auto found = spec.params.extract(key)) {
       if (!spec.planner.empty() || !std::holds_alternative<std::string>(found.mapped()))
         throw Error(ErrorKind::kBadUsage,
