@@ -15,6 +15,8 @@ packages=(
   libbenchmark-dev libgtest-dev
   # plots
   python3 python3-matplotlib python3-numpy
+  # the Python module
+  pybind11-dev python3-dev python3-pandas
   # the meshes behind cgal: models
   libcgal-demo
 )

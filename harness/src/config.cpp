@@ -244,7 +244,10 @@ void add_slot_axes(const ConfigTable& contender, const char* slot, const std::st
   const std::optional<ConfigEntry> entry = contender.find(slot);
   if (!entry) return;
   const ConfigTable table(file, "`" + std::string(slot) + "`", entry->table(kSlotExample));
-  static_cast<void>(table.at("planner").node);
+  const std::optional<ConfigEntry> command = table.find("command");
+  if (!command) static_cast<void>(table.at("planner").node);
+  if (command && table.find("planner"))
+    command->refuse("the slot has a `planner`, too; give one of them");
   for (ConfigEntry& found : table.entries()) {
     std::string name = std::string(slot) + "." + found.key;
     found.key = name;
@@ -271,10 +274,14 @@ void apply(const Axis& axis, const ConfigEntry& point, ConfiguredContender& cont
       axis.name.substr(0, dot) == "shell" ? contender.spec.shell : contender.spec.fill;
   if (!slot) slot.emplace();
   const std::string key = axis.name.substr(dot + 1);
-  if (key == "planner")
+  if (key == "planner") {
     slot->planner = point.text();
-  else
+  } else if (key == "command") {
+    slot->planner = std::string(kCommandPrefix) + point.text();
+    contender.key_places[axis.name.substr(0, dot) + ".planner"] = point.place;
+  } else {
     slot->params[key] = point.value();
+  }
 }
 
 /// Adds the points of a [[contender]]'s sweep; `places` says where each name was given.

@@ -2,14 +2,14 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
-#include <ctime>
 #include <exception>
 #include <new>
 #include <utility>
 
 #include "island_tree.hpp"
+#include "plan_timing.hpp"
+#include "planner_process.hpp"
 #include "routebench/geometry/error.hpp"
 
 namespace routebench {
@@ -47,12 +47,6 @@ std::uint64_t mixed_seed(std::uint64_t seed, int layer_index) {
   x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9u;
   x = (x ^ (x >> 27)) * 0x94D049BB133111EBu;
   return x ^ (x >> 31);
-}
-
-std::int64_t thread_cpu_ns() {
-  std::timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
 }
 
 bool is_place(Point2 p) {
@@ -93,7 +87,7 @@ class LayerAssembly {
     const Layer part{layer_.index,      layer_.z_mm, layer_.height_mm,
                      std::move(region), {},          layer_.repaired};
     context_.density = kind == StrokeKind::kSparse ? task_.density : 1;
-    Route route = timed_plan(*planner, name, part);
+    Route route = plan_part(*planner, name, part);
     if (const std::string fault = fault_of(route); !fault.empty()) throw failure(name, fault);
     if (route.strokes.empty()) return;
     context_.start = route.strokes.back().points.back();
@@ -106,19 +100,17 @@ class LayerAssembly {
   [[nodiscard]] PlannedLayer take() { return std::move(planned_); }
 
  private:
-  Route timed_plan(const Planner& planner, const std::string& name, const Layer& part) {
-    using Clock = std::chrono::steady_clock;
+  Route plan_part(const Planner& planner, const std::string& name, const Layer& part) {
     try {
-      const std::int64_t cpu_begin = thread_cpu_ns();
-      const Clock::time_point begin = Clock::now();
-      Route route = planner.plan(part, context_);
-      const Clock::time_point end = Clock::now();
-      planned_.plan_cpu_ns += thread_cpu_ns() - cpu_begin;
-      planned_.plan_wall_ns +=
-          std::chrono::duration_cast<std::chrono::nanoseconds>(end - begin).count();
+      PlanTime time;
+      Route route = timed_plan(planner, part, context_, time);
+      planned_.plan_wall_ns += time.wall_ns;
+      planned_.plan_cpu_ns += time.cpu_ns;
       return route;
     } catch (const std::bad_alloc&) {
       throw;
+    } catch (const PlannerDied& death) {
+      throw PlannerDied(blame(name, death.what()));
     } catch (const Error& error) {
       if (error.kind() == ErrorKind::kStopped) throw;
       throw failure(name, error.what());
@@ -129,9 +121,11 @@ class LayerAssembly {
     }
   }
 
+  [[nodiscard]] std::string blame(const std::string& name, const std::string& what) const {
+    return "planner " + name + ", layer " + std::to_string(layer_.index) + ": " + what;
+  }
   [[nodiscard]] Error failure(const std::string& name, const std::string& what) const {
-    return {ErrorKind::kBadInput,
-            "planner " + name + ", layer " + std::to_string(layer_.index) + ": " + what};
+    return {ErrorKind::kBadInput, blame(name, what)};
   }
 
   const Layer& layer_;
@@ -181,6 +175,11 @@ Contender::Contender(ContenderSpec spec, const Registry& registry) : spec_(std::
     shell_ = make_planner(*spec_.shell, PlannerRole::kShell, spec_.name, registry, shell_params_);
   if (spec_.fill)
     fill_ = make_planner(*spec_.fill, PlannerRole::kFill, spec_.name, registry, fill_params_);
+}
+
+double Contender::peak_rss_bytes() const {
+  return std::max(routebench::peak_rss_bytes(shell_.get()),
+                  routebench::peak_rss_bytes(fill_.get()));
 }
 
 PlannedLayer Contender::plan(const Layer& layer, const Demand& demand, const Task& task,

@@ -18,5 +18,8 @@ namespace routebench {
 
 /// The folder of an installed program in which plugins for all its users lie; it need not exist.
 [[nodiscard]] std::filesystem::path installed_plugin_folder();
+/// The folder of the Python package routebench, in which the host of Python planners lies.
+/// Throws Error{kBadInput} if it is not there.
+[[nodiscard]] std::filesystem::path python_package_folder();
 
 }  // namespace routebench

@@ -4,11 +4,8 @@
 #include <cmath>
 #include <filesystem>
 #include <numeric>
-#include <set>
-#include <system_error>
 #include <utility>
 
-#include "plugin_files.hpp"
 #include "routebench/geometry/error.hpp"
 #include "routebench/geometry/layer_io.hpp"
 #include "routebench/geometry/region.hpp"
@@ -89,47 +86,6 @@ SlicedModel read_layer_file(const std::string& spec, const Task& task,
   return sliced;
 }
 
-void add_plugin(PlannerSet& planners, const std::filesystem::path& file, bool by_name) {
-  PluginRecord record;
-  const std::string trouble = trouble_of_plugin(planners.registry, file);
-  if (trouble.empty()) {
-    record = load_plugin(planners.registry, file);
-  } else {
-    record.file = file.string();
-    record.sha256 = sha256_of_file(file).value_or("");
-    record.refused_because = trouble;
-  }
-  record.by_name = by_name;
-  planners.plugins.push_back(std::move(record));
-}
-
-[[noreturn]] void refuse(const PluginRecord& plugin) {
-  throw Error(ErrorKind::kBadInput,
-              "plugin " + plugin.file + ": refused: " + plugin.refused_because);
-}
-
-/// A planner that is not there.
-class StandIn final : public Planner {
- public:
-  explicit StandIn(std::string reason) : reason_(std::move(reason)) {}
-  [[nodiscard]] Route plan(const Layer&, const PlanContext&) const override {
-    throw Error(ErrorKind::kBadInput, reason_);
-  }
-
- private:
-  std::string reason_;
-};
-
-Registry::Entry stand_in(const std::string& name, PlannerRole role, const std::string& origin,
-                         const std::string& reason) {
-  Registry::Entry entry;
-  entry.info = {name, role, "not there", ""};
-  entry.origin = origin;
-  entry.resolve = [](const ParamSet& given) { return given; };
-  entry.make = [reason](const ParamSet&) { return std::make_unique<const StandIn>(reason); };
-  return entry;
-}
-
 Point2 lower_corner(const std::vector<Layer>& layers) {
   Point2 corner{};
   bool found = false;
@@ -143,45 +99,6 @@ Point2 lower_corner(const std::vector<Layer>& layers) {
 }
 
 }  // namespace
-
-PlannerSet load_planners(std::span<const std::string> plugin_files) {
-  PlannerSet planners;
-  register_builtin_planners(planners.registry);
-  for (const std::string& file : plugin_files) add_plugin(planners, file, true);
-  std::set<std::filesystem::path> seen;
-  std::error_code error;
-  for (const std::string& file : plugin_files)
-    seen.insert(std::filesystem::weakly_canonical(file, error));
-  for (const std::filesystem::path& folder : plugin_folders()) {
-    planners.folders.push_back({folder.string(), std::filesystem::is_directory(folder, error)});
-    for (const std::filesystem::path& file : plugin_files_in(folder))
-      if (seen.insert(std::filesystem::weakly_canonical(file, error)).second)
-        add_plugin(planners, file, false);
-  }
-  return planners;
-}
-
-void require_all_loaded(const PlannerSet& planners) {
-  for (const PluginRecord& plugin : planners.plugins)
-    if (!plugin.loaded && plugin.by_name) refuse(plugin);
-}
-
-void stand_in_for_refused(PlannerSet& planners, std::span<const ContenderSpec> contenders) {
-  std::string reason, origin;
-  for (const PluginRecord& plugin : planners.plugins) {
-    if (plugin.loaded || !plugin.by_name) continue;
-    if (!std::filesystem::exists(plugin.file)) refuse(plugin);
-    reason += "; plugin " + plugin.file + " was refused: " + plugin.refused_because;
-    if (origin.empty()) origin = plugin.file;
-  }
-  if (reason.empty()) return;
-  for (const ContenderSpec& contender : contenders)
-    for (const auto& [slot, role] : {std::pair{&contender.shell, PlannerRole::kShell},
-                                     std::pair{&contender.fill, PlannerRole::kFill}})
-      if (*slot && !planners.registry.entries().contains((*slot)->planner))
-        planners.registry.add_entry(
-            stand_in((*slot)->planner, role, origin, "it is not there" + reason));
-}
 
 SlicedModel slice_model(const std::string& spec, const Task& task, const SliceModelOptions& options,
                         const ParallelFor& parallel_for) {

@@ -51,7 +51,8 @@ std::vector<fs::path> plugin_files_in(const fs::path& folder) {
   std::error_code error;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
        entry.increment(error))
-    if (entry->path().extension() == ".so") files.push_back(entry->path());
+    if (entry->path().extension() == ".so" || entry->path().extension() == ".py")
+      files.push_back(entry->path());
   std::sort(files.begin(), files.end());
   return files;
 }
@@ -69,6 +70,7 @@ std::string trouble_of_plugin(const Registry& registry, const fs::path& file, do
     case ChildEnd::How::kResult:
       return std::move(end.text);
     case ChildEnd::How::kException:
+    case ChildEnd::How::kPlannerDied:
       return "throws while it is loaded: " + end.text;
     case ChildEnd::How::kExited:
       return "ends the program while it is loaded, with exit code " + std::to_string(end.code) +

@@ -14,7 +14,7 @@ namespace routebench {
 /// default below ~/.local/share), and that of the installation, beside the program.
 [[nodiscard]] std::vector<std::filesystem::path> plugin_folders();
 
-/// The *.so files of a folder by name; none if it cannot be read.
+/// The *.so and *.py files of a folder by name; none if it cannot be read.
 [[nodiscard]] std::vector<std::filesystem::path> plugin_files_in(
     const std::filesystem::path& folder);
 

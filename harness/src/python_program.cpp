@@ -15,9 +15,6 @@
 namespace routebench {
 namespace {
 
-/// The distribution's Python: one that stands earlier in the search path may lack matplotlib.
-constexpr const char* kPython = "/usr/bin/python3";
-
 /// While it lives, Ctrl-C stops the child alone, which then cleans up behind itself.
 class IgnoreInterrupt {
  public:

@@ -6,6 +6,10 @@
 
 namespace routebench {
 
+/// The distribution's Python: one that stands earlier in the search path may lack numpy and
+/// matplotlib.
+inline constexpr const char* kPython = "/usr/bin/python3";
+
 /// Runs a package of the folder experiments (or of the installed program's data) and waits for it.
 /// Ctrl-C reaches the package alone, which then cleans up behind itself.
 ///

@@ -1,7 +1,5 @@
 #include "run_cell.hpp"
 
-#include <sys/resource.h>
-
 #include <algorithm>
 
 #include "byte_stream.hpp"
@@ -133,31 +131,10 @@ TimingSample timing_of(const std::vector<PlannedLayer>& planned) {
   return sample;
 }
 
-/// So far; resident pages that were inherited are part of it, for every cell alike.
-double peak_rss_bytes() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) * 1024;
-}
-
 std::string place_of(const ChildEnd& end) {
   if (end.layer < 0) return " before the first layer";
   return std::string(end.phase == ChildProgress::kJudging ? " while judging" : " while planning") +
          " layer " + std::to_string(end.layer);
-}
-
-/// The last line that a process wrote, if any, for a reason.
-std::string last_line_of(const std::string& words) {
-  const std::size_t end = words.find_last_not_of(" \t\r\n");
-  if (end == std::string::npos) return {};
-  const std::size_t begin = words.find_last_of("\r\n", end);
-  std::string line = words.substr(begin == std::string::npos ? 0 : begin + 1,
-                                  begin == std::string::npos ? end + 1 : end - begin);
-  constexpr std::size_t kMostBytes = 300;
-  if (line.size() > kMostBytes) line.resize(kMostBytes);
-  for (char& c : line)
-    if (static_cast<unsigned char>(c) < ' ' || static_cast<unsigned char>(c) > '~') c = '?';
-  return "; it last wrote: " + line;
 }
 
 std::string one_line(std::string text) {
@@ -179,7 +156,8 @@ std::string execute_cell(const CellWork& work, ChildProgress& progress) {
   const std::vector<PlannedLayer> planned = plan(work, progress);
   CellResult result;
   result.timing = timing_of(planned);
-  const double peak_bytes = peak_rss_bytes();
+  // Resident pages that were inherited are part of it, for every cell alike.
+  const double peak_bytes = work.contender->peak_rss_bytes();
 
   progress.phase = ChildProgress::kJudging;
   const SlicedModel& sliced = work.model->sliced;
@@ -216,6 +194,8 @@ CellResult cell_result_of(const ChildEnd& end, const ChildLimits& limits) {
       }
     case ChildEnd::How::kException:
       return without_result(Outcome::kFailed, one_line(end.text) + place_of(end));
+    case ChildEnd::How::kPlannerDied:
+      return without_result(Outcome::kCrashed, one_line(end.text) + place_of(end));
     case ChildEnd::How::kExited:
       return without_result(Outcome::kCrashed, "ended its process with exit code " +
                                                    std::to_string(end.code) + place_of(end) +

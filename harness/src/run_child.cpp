@@ -20,6 +20,7 @@
 #include <system_error>
 
 #include "byte_stream.hpp"
+#include "planner_process.hpp"
 #include "routebench/geometry/error.hpp"
 
 namespace routebench {
@@ -141,6 +142,9 @@ void tell(ChildEnd::How how, std::string_view text) {
   } catch (const std::bad_alloc&) {
     lift_limit();
     tell(ChildEnd::How::kOutOfMemory, "");
+  } catch (const PlannerDied& death) {
+    lift_limit();
+    tell(ChildEnd::How::kPlannerDied, death.what());
   } catch (const std::exception& error) {
     lift_limit();
     tell(ChildEnd::How::kException, error.what());
@@ -160,8 +164,8 @@ std::optional<ChildEnd> told_by(std::string_view bytes) {
     ChildEnd end;
     end.text = in.text();
     if (in.text() != kResultMark) return std::nullopt;
-    for (const ChildEnd::How told :
-         {ChildEnd::How::kResult, ChildEnd::How::kException, ChildEnd::How::kOutOfMemory})
+    for (const ChildEnd::How told : {ChildEnd::How::kResult, ChildEnd::How::kException,
+                                     ChildEnd::How::kPlannerDied, ChildEnd::How::kOutOfMemory})
       if (how == static_cast<std::uint64_t>(told)) {
         end.how = told;
         return end;
@@ -350,6 +354,19 @@ std::vector<ChildPool::Finished> ChildPool::wait() {
     std::erase(children_, nullptr);
   }
   return finished;
+}
+
+std::string last_line_of(const std::string& words) {
+  const std::size_t end = words.find_last_not_of(" \t\r\n");
+  if (end == std::string::npos) return {};
+  const std::size_t begin = words.find_last_of("\r\n", end);
+  std::string line = words.substr(begin == std::string::npos ? 0 : begin + 1,
+                                  begin == std::string::npos ? end + 1 : end - begin);
+  constexpr std::size_t kMostBytes = 300;
+  if (line.size() > kMostBytes) line.resize(kMostBytes);
+  for (char& c : line)
+    if (static_cast<unsigned char>(c) < ' ' || static_cast<unsigned char>(c) > '~') c = '?';
+  return "; it last wrote: " + line;
 }
 
 std::string signal_name(int signal) {

@@ -31,6 +31,7 @@ struct ChildEnd {
   enum class How {
     kResult,       ///< `text` is what the work returned
     kException,    ///< `text` is what it threw said
+    kPlannerDied,  ///< `text` says how the planner's own process ended (see PlannerDied)
     kExited,       ///< it ended its process with `code` before the work was done
     kSignal,       ///< it died of the signal `code`
     kTimedOut,     ///< it was killed because its time was over
@@ -82,6 +83,9 @@ class ChildPool {
   ChildLimits limits_;
   std::vector<std::unique_ptr<Child>> children_;
 };
+
+/// The last line that a process wrote, for a message: "; it last wrote: ..."; empty if none.
+[[nodiscard]] std::string last_line_of(const std::string& words);
 
 /// "SIGSEGV" for SIGSEGV; "signal 70" for one without a name.
 [[nodiscard]] std::string signal_name(int signal);

@@ -19,7 +19,7 @@ bool is_snake_case(const std::string& name) {
 
 void Registry::add_entry(Entry entry) {
   const std::string name = entry.info.name;
-  if (!is_snake_case(name)) {
+  if (!is_snake_case(name) && !name.starts_with(kCommandPrefix)) {
     throw Error(ErrorKind::kBadInput,
                 "planner name '" + name + "' must be snake_case: small letters, digits, _");
   }

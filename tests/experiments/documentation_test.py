@@ -11,6 +11,9 @@ from pathlib import Path
 
 SOURCE = Path(__file__).resolve().parents[2]
 PROGRAM = Path(os.environ["ROUTEBENCH_PROGRAM"])
+MODULE = next(
+    PROGRAM.parent.parent.glob("python/routebench/_routebench*.so"), Path("not_built/not_built/x")
+)
 
 
 def shell_blocks(page: Path) -> list[str]:
@@ -18,21 +21,45 @@ def shell_blocks(page: Path) -> list[str]:
     return re.findall(r"^```sh\n(.*?)^```$", page.read_text(encoding="utf-8"), re.M | re.S)
 
 
+def python_files(page: Path) -> dict[str, str]:
+    """The blocks of a page that are marked ```python and begin with `# FILE.py`."""
+    blocks = re.findall(r"^```python\n(.*?)^```$", page.read_text(encoding="utf-8"), re.M | re.S)
+    return {re.match(r"# (\w+\.py)\n", block).group(1): block for block in blocks}
+
+
 class CommandsTest(unittest.TestCase):
-    """Runs every command of the README as its reader would, in an empty folder."""
+    """Runs every command of a page as its reader would, in an empty folder."""
 
     def test_commands_of_the_readme_run(self) -> None:
         blocks = shell_blocks(SOURCE / "README.md")
         self.assertGreater(len(blocks), 4)
         with tempfile.TemporaryDirectory() as folder:
             shutil.copytree(SOURCE / "experiments", Path(folder) / "experiments")
-            path = f"{PROGRAM.parent}{os.pathsep}{os.environ['PATH']}"
+            self.run_blocks(blocks, folder)
+
+    @unittest.skipUnless(MODULE.is_file(), "the Python module is not built here")
+    def test_commands_of_the_page_on_planners_run(self) -> None:
+        page = SOURCE / "planners" / "README.md"
+        blocks, files = shell_blocks(page), python_files(page)
+        self.assertGreaterEqual(len(blocks), 4)
+        self.assertGreaterEqual(len(files), 3)
+        with tempfile.TemporaryDirectory() as folder:
+            for name, text in files.items():
+                (Path(folder) / name).write_text(text, encoding="utf-8")
+            self.run_blocks(blocks, folder)
+
+    def run_blocks(self, blocks: list[str], folder: str) -> None:
+        """Runs blocks one after the other with this program and Debian's Python."""
+        # Wherever `python3` may lead, it shall be the one that the module was built for.
+        with tempfile.TemporaryDirectory() as links:
+            (Path(links) / "python3").symlink_to("/usr/bin/python3")
+            path = os.pathsep.join([links, str(PROGRAM.parent), os.environ["PATH"]])
             for block in blocks:
                 with self.subTest(block=block):
                     done = subprocess.run(
                         ["bash", "-euo", "pipefail", "-c", block],
                         cwd=folder,
-                        env={**os.environ, "PATH": path},
+                        env={**os.environ, "PATH": path, "PYTHONPATH": str(MODULE.parents[1])},
                         capture_output=True,
                         text=True,
                         check=False,

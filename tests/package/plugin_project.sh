@@ -25,6 +25,14 @@ for file in planner_template/cpp/planner.cpp routebench_plots/__main__.py; do
   fi
 done
 
+PYTHONPATH=$work/moved/lib/python3.11/dist-packages /usr/bin/python3 -B -c "import routebench
+if not routebench.__file__.startswith('$work/moved/'):
+    raise SystemExit('plugin_project.sh: not the installed module: ' + routebench.__file__)
+routebench.plan(routebench.slice_model('shape:box'), 'greedy_shell')"
+"$program" new-planner my_python "$work/my_python" --python
+"$program" plan shape:box --fill my_python --plugin "$work/my_python/my_python.py" \
+  --task perimeters=0 --task density=1 >/dev/null
+
 # The page's first block of commands, one a line.
 mapfile -t commands < <(sed -n '/^```sh$/,/^```$/{/^```/!p;/^```$/q}' "$source/planners/README.md")
 if [ "${#commands[@]}" -lt 6 ]; then

@@ -101,7 +101,8 @@ void add_printer_option(CLI::App& command, std::vector<std::string>& settings) {
 }
 
 void add_plugin_option(CLI::App& command, std::vector<std::string>& files) {
-  add_repeated(command, "--plugin", files, "FILE.so", "Load planners from a shared library");
+  add_repeated(command, "--plugin", files, "FILE",
+               "Load planners from a shared library (.so) or a Python file (.py)");
 }
 
 void add_jobs_option(CLI::App& command, int& jobs, const std::string& remark) {

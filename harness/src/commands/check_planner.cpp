@@ -1,22 +1,21 @@
-#include <sys/resource.h>
-
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <ctime>
 #include <filesystem>
 #include <iostream>
 #include <map>
 #include <memory>
 #include <numbers>
 #include <optional>
+#include <span>
 #include <sstream>
 #include <string>
 #include <vector>
 
 #include "arguments.hpp"
 #include "json_parts.hpp"
+#include "plan_timing.hpp"
 #include "routebench/geometry/grid.hpp"
 #include "routebench/harness/commands.hpp"
 #include "routebench/harness/conformance.hpp"
@@ -32,6 +31,7 @@ namespace {
 constexpr int kExitNotValid = 1;
 constexpr std::size_t kShownFailures = 4;  // of a check; JSON and pictures have all
 constexpr ChildLimits kLimits{.timeout_s = 60, .memory_mb = 2048};
+constexpr double kBytesPerMib = 1 << 20;
 constexpr std::array<int, 4> kLadder{250, 1000, 4000, 16000};  // vertices
 
 struct CheckArguments {
@@ -62,12 +62,6 @@ struct Step {
   double cpu_ms = 0;
   double grown_mib = 0;
 };
-
-double peak_mib() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) / 1024;
-}
 
 /// Begins every piece of work in a child of its own and collects what they tell.
 std::map<std::size_t, ChildEnd> run_in_children(const std::vector<ChildPool::Work>& works) {
@@ -155,11 +149,14 @@ std::vector<Step> climb(const Registry& registry, const std::string& planner) {
       PlanContext context;
       context.density = registry.at(planner).info.role == PlannerRole::kShell ? 1 : 0.2;
       const auto made = registry.at(planner).make({});
-      const double before_mib = peak_mib();
-      const std::clock_t start = std::clock();
-      static_cast<void>(made->plan(layer, context));
-      const double cpu_ms = 1e3 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
-      return text_of({{"cpu_ms", cpu_ms}, {"grown_mib", peak_mib() - before_mib}}, true);
+      // What a planner takes to begin with, a process of its own perhaps, is no growth.
+      static_cast<void>(made->plan(Layer{}, context));
+      const double before_bytes = peak_rss_bytes(made.get());
+      PlanTime time;
+      static_cast<void>(timed_plan(*made, layer, context, time));
+      const double grown_mib = (peak_rss_bytes(made.get()) - before_bytes) / kBytesPerMib;
+      return text_of(
+          {{"cpu_ms", 1e-6 * static_cast<double>(time.cpu_ns)}, {"grown_mib", grown_mib}}, true);
     });
   const std::map<std::size_t, ChildEnd> ends = run_in_children(works);
   std::vector<Step> steps;
@@ -236,9 +233,10 @@ Json document_of(const Registry::Entry& entry, const std::vector<CheckResult>& r
 }
 
 int check(const CheckArguments& arguments) {
-  const PlannerSet planners = load_planners(arguments.plugins);
+  PlannerSet planners = load_planners(arguments.plugins);
   require_all_loaded(planners);
   print_refused(planners);
+  add_commands(planners, std::span(&arguments.name, 1));
   const Registry::Entry& entry = planners.registry.at(arguments.name);
   const std::vector<CheckResult> results = run_checks(planners.registry, arguments.name);
   const std::vector<Step> ladder = climb(planners.registry, arguments.name);

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "arguments.hpp"
+#include "python_program.hpp"
 #include "routebench/geometry/error.hpp"
 #include "routebench/geometry/model.hpp"
 #include "routebench/harness/commands.hpp"
@@ -30,8 +31,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The Python that plots run with.
-constexpr const char* kPython = "/usr/bin/python3";
 constexpr const char* kPythonProbe =
     "import sys, numpy, matplotlib; print(sys.version.split()[0] + ', numpy ' + numpy.__version__ "
     "+ ', matplotlib ' + matplotlib.__version__)";

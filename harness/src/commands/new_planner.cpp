@@ -26,6 +26,13 @@ namespace fs = std::filesystem;
 struct NewPlannerArguments {
   std::string name;
   std::string folder;
+  bool python = false;
+};
+
+/// One of the template's files and what it becomes.
+struct TemplateFile {
+  std::string from;
+  std::string to;
 };
 
 /// Targets that every CMake project has or may not have.
@@ -93,23 +100,31 @@ void write_project(const NewPlannerArguments& arguments) {
   if (fs::exists(folder, error) && !fs::is_empty(folder, error))
     throw Error(ErrorKind::kBadInput,
                 folder.string() + ": is there already and not empty; name a new folder");
-  const fs::path source =
-      data_folder("planner_template", "planners/template", "cpp/planner.cpp") / "cpp";
+  const fs::path source = data_folder("planner_template", "planners/template", "cpp/planner.cpp") /
+                          (arguments.python ? "python" : "cpp");
+  std::vector<TemplateFile> files{{"experiment.toml", "experiment.toml"}};
+  if (arguments.python) {
+    files.push_back({"planner.py", arguments.name + ".py"});
+  } else {
+    files.push_back({"planner.cpp", arguments.name + ".cpp"});
+    files.push_back({"CMakeLists.txt", "CMakeLists.txt"});
+  }
   OutputSet outputs;
   outputs.add_folder(folder);
-  for (const auto& [from, to] :
-       std::vector<std::pair<std::string, std::string>>{{"CMakeLists.txt", "CMakeLists.txt"},
-                                                        {"planner.cpp", arguments.name + ".cpp"},
-                                                        {"experiment.toml", "experiment.toml"}})
+  for (const auto& [from, to] : files)
     outputs.add(folder / to, [&, text = filled_in(content_of(source / from), arguments.name)](
                                  std::ostream& out) { out << text; });
   outputs.commit();
 
-  const std::string prefix = package_prefix();
-  std::cout << "wrote " << folder.string() << "; next, in that folder:\n"
-            << "  cmake -B build" << (prefix.empty() ? "" : " -DCMAKE_PREFIX_PATH=" + prefix)
-            << "\n  cmake --build build\n  routebench check-planner " << arguments.name
-            << " --plugin build/" << arguments.name << ".so\n"
+  std::cout << "wrote " << folder.string() << "; next, in that folder:\n";
+  if (!arguments.python) {
+    const std::string prefix = package_prefix();
+    std::cout << "  cmake -B build" << (prefix.empty() ? "" : " -DCMAKE_PREFIX_PATH=" + prefix)
+              << "\n  cmake --build build\n";
+  }
+  std::cout << "  routebench check-planner " << arguments.name << " --plugin "
+            << (arguments.python ? arguments.name + ".py" : "build/" + arguments.name + ".so")
+            << "\n"
             << "  routebench run experiment.toml --out results\n  routebench plot results\n";
 }
 
@@ -118,13 +133,15 @@ void write_project(const NewPlannerArguments& arguments) {
 void add_new_planner_command(CLI::App& app, int& exit_code) {
   const auto arguments = std::make_shared<NewPlannerArguments>();
   CLI::App& command =
-      *app.add_subcommand("new-planner", "Write a plugin project that builds at once");
+      *app.add_subcommand("new-planner", "Write a planner of your own that works at once");
   command.add_option("NAME", arguments->name, "Of the planner, in snake_case")
       ->type_name("")
       ->required();
   command.add_option("DIR", arguments->folder, "A folder that is new or empty")
       ->type_name("")
       ->required();
+  command.add_flag("--python", arguments->python,
+                   "One file of Python, which needs no compiler, instead of C++");
   command.callback([arguments, &exit_code] {
     write_project(*arguments);
     exit_code = 0;

@@ -1,5 +1,3 @@
-#include <sys/resource.h>
-
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <memory>
@@ -10,6 +8,7 @@
 #include "arguments.hpp"
 #include "json_documents.hpp"
 #include "layer_selection.hpp"
+#include "planner_process.hpp"
 #include "routebench/geometry/error.hpp"
 #include "routebench/harness/commands.hpp"
 #include "routebench/harness/gcode_writer.hpp"
@@ -54,12 +53,6 @@ ContenderSpec contender_of(const PlanArguments& arguments, const Registry& regis
   return spec;
 }
 
-double peak_rss_bytes() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return 1024.0 * static_cast<double>(usage.ru_maxrss);
-}
-
 /// One call of `routebench plan`, from its arguments to its outputs.
 class Plan {
  public:
@@ -70,6 +63,7 @@ class Plan {
         parallel_for_(parallel_loop(arguments.jobs)) {
     require_all_loaded(planners_);
     print_refused(planners_);
+    add_commands(planners_, std::vector{arguments.shell, arguments.fill});
     contender_.emplace(contender_of(arguments, planners_.registry), planners_.registry);
   }
 
@@ -80,10 +74,9 @@ class Plan {
     print_warnings(arguments_.model, model_.sliced.warnings);
     chosen_ = select_layers(arguments_.layers, model_.sliced.layers);
     plan_and_judge();
-    const bool planned = cell_.verdict.outcome != Outcome::kFailed;
     OutputSet outputs;
-    if (planned && !arguments_.gcode.empty()) add_gcode(outputs);
-    if (planned && !arguments_.svg.empty()) add_pictures(outputs);
+    if (has_route() && !arguments_.gcode.empty()) add_gcode(outputs);
+    if (has_route() && !arguments_.svg.empty()) add_pictures(outputs);
     if (!arguments_.json.empty() && arguments_.json != "-")
       write_json(outputs, arguments_.json, document());
     outputs.commit();
@@ -100,15 +93,21 @@ class Plan {
     try {
       planned_ = plan_layers(*contender_, model_, chosen_, judge_.task(), arguments_.seed, {},
                              parallel_for_);
+    } catch (const PlannerDied& death) {
+      cell_.verdict = {Outcome::kCrashed, death.what()};
     } catch (const Error& error) {
       // A planner that breaks its contract is a result like any other.
       cell_.verdict = {Outcome::kFailed, error.what()};
-      std::cerr << "routebench: " << arguments_.model << ": " << error.what() << '\n';
+    }
+    if (!has_route()) {
+      std::cerr << "routebench: " << arguments_.model << ": " << cell_.verdict.reason << '\n';
       return;
     }
     cell_ = judge_layers(judge_, model_, chosen_, planned_, parallel_for_);
-    cell_.totals[metric_index("peak_rss_bytes")] = peak_rss_bytes();
+    cell_.totals[metric_index("peak_rss_bytes")] = contender_->peak_rss_bytes();
   }
+
+  [[nodiscard]] bool has_route() const { return planned_.size() == chosen_.size(); }
 
   [[nodiscard]] Json document() const {
     return plan_document(

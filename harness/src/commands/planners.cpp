@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -68,7 +69,8 @@ void print_all(std::ostream& out, const PlannerSet& planners) {
 }
 
 void list(const PlannersArguments& arguments) {
-  const PlannerSet planners = load_planners(arguments.plugins);
+  PlannerSet planners = load_planners(arguments.plugins);
+  add_commands(planners, std::span(&arguments.name, 1));
   const bool all = arguments.name.empty();
   OutputSet none;
   if (arguments.json) {

@@ -4,6 +4,9 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "arguments.hpp"
 #include "routebench/geometry/error.hpp"
@@ -63,8 +66,13 @@ PlannerSet planners_of(const ExperimentConfig& config, const Arguments& argument
   files.insert(files.end(), arguments.plugins.begin(), arguments.plugins.end());
   PlannerSet planners = load_planners(files);
   std::vector<ContenderSpec> contenders;
-  for (const ConfiguredContender& contender : config.contenders)
+  std::vector<std::string> names;
+  for (const ConfiguredContender& contender : config.contenders) {
     contenders.push_back(contender.spec);
+    for (const std::optional<SlotSpec>& slot : {contender.spec.shell, contender.spec.fill})
+      if (slot) names.push_back(slot->planner);
+  }
+  add_commands(planners, names, std::filesystem::absolute(config.file).parent_path());
   stand_in_for_refused(planners, contenders);
   return planners;
 }

@@ -49,11 +49,17 @@ struct ContenderSpec {
 enum class StrokeKind : std::uint8_t { kWall, kDense, kSparse };
 [[nodiscard]] std::string_view to_string(StrokeKind kind);  ///< "wall", "dense", "sparse"
 
+/// Time inside plan().
+struct PlanTime {
+  std::int64_t wall_ns = 0;
+  std::int64_t cpu_ns = 0;  ///< of the thread, or of the planner's own process
+};
+
 struct PlannedLayer {
   Route route;
   std::vector<StrokeKind> kinds;  ///< one a stroke
-  std::int64_t plan_wall_ns = 0;  ///< inside plan() alone, summed over its calls
-  std::int64_t plan_cpu_ns = 0;   ///< of this thread
+  std::int64_t plan_wall_ns = 0;  ///< inside plan() alone, summed over its calls; see timed_plan
+  std::int64_t plan_cpu_ns = 0;
 };
 
 /// A contender ready to plan. Immutable; plan() may be called from any thread.
@@ -72,10 +78,14 @@ class Contender {
   ///        planner throws anything else, or returns a stroke of fewer than two points, a
   ///        coordinate that is not finite or a kilometre away, or a width that is
   ///        not positive or more than a metre.
-  ///        std::bad_alloc passes as it is.
+  ///        std::bad_alloc passes as it is; PlannerDied, if a planner's own process has ended.
   /// Cost   beside the planners' own near-linear in the layer's vertices.
   [[nodiscard]] PlannedLayer plan(const Layer& layer, const Demand& demand, const Task& task,
                                   Point2 origin, std::uint64_t seed, std::stop_token stop) const;
+
+  /// The most memory that planning has taken so far: of this process, or of a planner's own process
+  /// if that took more.
+  [[nodiscard]] double peak_rss_bytes() const;
 
   [[nodiscard]] const ContenderSpec& spec() const noexcept { return spec_; }
   /// The slots' parameters, all of them.

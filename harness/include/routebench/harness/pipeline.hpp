@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <span>
@@ -39,9 +40,18 @@ struct PlannerSet {
 };
 
 /// Registers the built-in planners, then what the given plugin files bring, then what the files on
-/// the search path bring (see plugin_files.hpp). Each file is loaded in a process of its own first.
-/// Must be called while this process has no other thread.
+/// the search path bring (see plugin_files.hpp): shared libraries, and Python files (.py). Each
+/// library is loaded in a process of its own first. Must be called while this process has no other
+/// thread.
 [[nodiscard]] PlannerSet load_planners(std::span<const std::string> plugin_files);
+
+/// Registers those of the names that are commands, such as "command:./my_planner --fast".
+///
+/// Takes  names of planners, others among them, and the folder in which the commands run; empty:
+///        the current one.
+/// Throws Error{kBadInput} naming the first command that is no planner and why.
+void add_commands(PlannerSet& planners, std::span<const std::string> names,
+                  const std::filesystem::path& folder = {});
 
 /// Throws Error{kBadInput} naming the first plugin that was asked for and refused, and why.
 void require_all_loaded(const PlannerSet& planners);

@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "routebench/harness/contender.hpp"
 #include "routebench/harness/judge.hpp"
 #include "routebench/harness/metrics.hpp"
 #include "routebench/harness/provenance.hpp"
@@ -61,12 +62,6 @@ struct SettingRecord {
 struct RouteRecord {
   std::size_t layer_index = 0;
   std::string strokes_json;
-};
-
-/// Time inside plan().
-struct PlanTime {
-  std::int64_t wall_ns = 0;
-  std::int64_t cpu_ns = 0;
 };
 
 /// One timed execution of a cell's planning.

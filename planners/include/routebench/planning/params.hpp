@@ -81,6 +81,10 @@ class ParamBinder {
     member = (choices.begin() + chosen)->value;
   }
 
+  /// A choice whose names are known at run time only. Takes and returns places in `names`.
+  std::size_t bind_choice(const char* name, const std::vector<std::string>& names,
+                          std::size_t chosen, const char* help);
+
   /// Throws Error{kBadInput} if a value was given for a name that nobody bound, with the nearest
   /// bound name.
   void finish() const;
@@ -92,8 +96,6 @@ class ParamBinder {
  private:
   /// Notes a parameter; returns the value that was given for it, if any.
   const ParamValue* declare(ParamSchema schema);
-  std::size_t bind_choice(const char* name, const std::vector<std::string>& names,
-                          std::size_t chosen, const char* help);
 
   std::string owner_;
   ParamSet values_;

@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -13,6 +14,9 @@
 #include "routebench/planning/planner.hpp"
 
 namespace routebench {
+
+/// How the names of planners begin that are commands of the user: "command:./my_planner --fast".
+inline constexpr std::string_view kCommandPrefix = "command:";
 
 /// What a planner can lay.
 enum class PlannerRole { kShell, kFill };
@@ -24,7 +28,7 @@ struct PlannerInfo {
     std::string value;
   };
 
-  std::string name;  ///< as in configs: snake_case
+  std::string name;  ///< as in configs: snake_case (see Registry::add_entry)
   PlannerRole role = PlannerRole::kFill;
   std::string summary;  ///< one line
   std::string source;   ///< author, year; empty if it is our own
@@ -80,7 +84,8 @@ class Registry {
                }});
   }
 
-  /// Adds a planner that is no class of this process. Throws Error{kBadInput} as add does.
+  /// Adds a planner that is no class of this process. Its name is snake_case, or begins with
+  /// kCommandPrefix. Throws Error{kBadInput} as add does.
   void add_entry(Entry entry);
 
   /// Throws Error{kBadInput} with the nearest known name.

@@ -1,0 +1,44 @@
+#include "plan_timing.hpp"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <chrono>
+#include <ctime>
+
+#include "process_planner.hpp"
+
+namespace routebench {
+namespace {
+
+std::int64_t thread_cpu_ns() {
+  std::timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
+}
+
+}  // namespace
+
+Route timed_plan(const Planner& planner, const Layer& layer, const PlanContext& context,
+                 PlanTime& time) {
+  if (const auto* process = dynamic_cast<const ProcessPlanner*>(&planner))
+    return process->plan(layer, context, time);
+  using Clock = std::chrono::steady_clock;
+  const std::int64_t cpu_begin = thread_cpu_ns();
+  const Clock::time_point begin = Clock::now();
+  Route route = planner.plan(layer, context);
+  const Clock::time_point end = Clock::now();
+  time.cpu_ns += thread_cpu_ns() - cpu_begin;
+  time.wall_ns += std::chrono::duration_cast<std::chrono::nanoseconds>(end - begin).count();
+  return route;
+}
+
+double peak_rss_bytes(const Planner* planner) {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  const double ours = static_cast<double>(usage.ru_maxrss) * 1024;
+  const auto* process = dynamic_cast<const ProcessPlanner*>(planner);
+  return process == nullptr ? ours : std::max(ours, static_cast<double>(process->peak_rss_bytes()));
+}
+
+}  // namespace routebench

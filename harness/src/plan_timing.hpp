@@ -1,0 +1,17 @@
+#pragma once
+/// How long plan() takes.
+
+#include "routebench/harness/contender.hpp"
+
+namespace routebench {
+
+/// Calls plan() once and adds the time that it took; nothing if it throws. A planner that is a
+/// program of its own is timed as ProcessPlanner says.
+[[nodiscard]] Route timed_plan(const Planner& planner, const Layer& layer,
+                               const PlanContext& context, PlanTime& time);
+
+/// The most memory that planning has taken so far: of this process, or of the planner's own if that
+/// took more.
+[[nodiscard]] double peak_rss_bytes(const Planner* planner = nullptr);
+
+}  // namespace routebench

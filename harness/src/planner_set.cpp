@@ -1,0 +1,111 @@
+/// Which planners a program has: built in, from plugin files, from commands.
+
+#include <filesystem>
+#include <memory>
+#include <set>
+#include <system_error>
+#include <utility>
+
+#include "plugin_files.hpp"
+#include "process_planner.hpp"
+#include "routebench/geometry/error.hpp"
+#include "routebench/harness/pipeline.hpp"
+#include "routebench/planning/sha256.hpp"
+
+namespace routebench {
+namespace {
+
+void add_plugin(PlannerSet& planners, const std::filesystem::path& file, bool by_name) {
+  PluginRecord record;
+  if (is_python_plugin(file.string())) {
+    record = load_python_plugin(planners.registry, file.string());
+  } else if (const std::string trouble = trouble_of_plugin(planners.registry, file);
+             trouble.empty()) {
+    record = load_plugin(planners.registry, file);
+  } else {
+    record.file = file.string();
+    record.sha256 = sha256_of_file(file).value_or("");
+    record.refused_because = trouble;
+  }
+  record.by_name = by_name;
+  planners.plugins.push_back(std::move(record));
+}
+
+[[noreturn]] void refuse(const PluginRecord& plugin) {
+  throw Error(ErrorKind::kBadInput,
+              "plugin " + plugin.file + ": refused: " + plugin.refused_because);
+}
+
+/// A planner that is not there.
+class StandIn final : public Planner {
+ public:
+  explicit StandIn(std::string reason) : reason_(std::move(reason)) {}
+  [[nodiscard]] Route plan(const Layer&, const PlanContext&) const override {
+    throw Error(ErrorKind::kBadInput, reason_);
+  }
+
+ private:
+  std::string reason_;
+};
+
+Registry::Entry stand_in(const std::string& name, PlannerRole role, const std::string& origin,
+                         const std::string& reason) {
+  Registry::Entry entry;
+  entry.info = {name, role, "not there", ""};
+  entry.origin = origin;
+  entry.resolve = [](const ParamSet& given) { return given; };
+  entry.make = [reason](const ParamSet&) { return std::make_unique<const StandIn>(reason); };
+  return entry;
+}
+
+}  // namespace
+
+PlannerSet load_planners(std::span<const std::string> plugin_files) {
+  PlannerSet planners;
+  register_builtin_planners(planners.registry);
+  for (const std::string& file : plugin_files) add_plugin(planners, file, true);
+  std::set<std::filesystem::path> seen;
+  std::error_code error;
+  for (const std::string& file : plugin_files)
+    seen.insert(std::filesystem::weakly_canonical(file, error));
+  for (const std::filesystem::path& folder : plugin_folders()) {
+    planners.folders.push_back({folder.string(), std::filesystem::is_directory(folder, error)});
+    for (const std::filesystem::path& file : plugin_files_in(folder))
+      if (seen.insert(std::filesystem::weakly_canonical(file, error)).second)
+        add_plugin(planners, file, false);
+  }
+  return planners;
+}
+
+void add_commands(PlannerSet& planners, std::span<const std::string> names,
+                  const std::filesystem::path& folder) {
+  for (const std::string& name : names) {
+    if (!is_command(name) || planners.registry.entries().contains(name)) continue;
+    planners.plugins.push_back(load_command(planners.registry, name, folder));
+    if (!planners.plugins.back().loaded) require_all_loaded(planners);
+  }
+}
+
+void require_all_loaded(const PlannerSet& planners) {
+  for (const PluginRecord& plugin : planners.plugins)
+    if (!plugin.loaded && plugin.by_name) refuse(plugin);
+}
+
+void stand_in_for_refused(PlannerSet& planners, std::span<const ContenderSpec> contenders) {
+  std::string reason, origin;
+  for (const PluginRecord& plugin : planners.plugins) {
+    if (plugin.loaded || !plugin.by_name) continue;
+    if (!std::filesystem::exists(plugin.file)) refuse(plugin);
+    reason += "; plugin " + plugin.file + " was refused: " + plugin.refused_because;
+    if (origin.empty()) origin = plugin.file;
+  }
+  if (reason.empty()) return;
+  for (const ContenderSpec& contender : contenders)
+    for (const auto& [slot, role] : {std::pair{&contender.shell, PlannerRole::kShell},
+                                     std::pair{&contender.fill, PlannerRole::kFill}})
+      if (*slot && !planners.registry.entries().contains((*slot)->planner))
+        planners.registry.add_entry(
+            stand_in((*slot)->planner, role, origin, "it is not there" + reason));
+}
+
+}  // namespace routebench

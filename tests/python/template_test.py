@@ -1,0 +1,32 @@
+"""The project that `new-planner --python` writes."""
+
+import re
+import unittest
+
+from support import FolderTest
+
+
+class TemplateTest(FolderTest):
+    """`new-planner --python` writes what works at once."""
+
+    def test_it_passes_the_conformance_test_and_its_experiment(self) -> None:
+        written = self.call("new-planner", "my_rings", "mine", "--python").stdout
+        commands = re.findall(r"^  routebench (.*)$", written, re.M)
+        self.assertEqual(len(commands), 3)
+        self.assertEqual(
+            sorted(file.name for file in (self.folder / "mine").iterdir()),
+            ["experiment.toml", "my_rings.py"],
+        )
+        source = (self.folder / "mine" / "my_rings.py").read_text(encoding="utf-8")
+        self.assertLess(source.count("\n"), 80)
+        self.assertNotIn("@", source)
+        self.folder = self.folder / "mine"
+        checked = self.call(*commands[0].split())
+        self.assertEqual(checked.stdout.count("\npass  "), 7)
+        ran = self.call(*commands[1].split())
+        self.assertRegex(ran.stderr, r"\[18/18\]")
+        self.assertNotRegex(ran.stderr, "failed|crashed|off_task")
+
+
+if __name__ == "__main__":
+    unittest.main()
