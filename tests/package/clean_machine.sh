@@ -13,7 +13,7 @@ package=$(realpath "$1")
 [ "$(id -u)" = 0 ] || { echo "clean_machine.sh: must be run as root" >&2; exit 2; }
 command -v debootstrap >/dev/null || { echo "clean_machine.sh: needs debootstrap" >&2; exit 2; }
 
-mirror=$(apt-get indextargets --format '$(REPO_URI)' | grep -m 1 -E '/debian/?$')
+mirror=$(apt-get indextargets --format '$(REPO_URI)' | awk '/\/debian\/?$/ && !n++')
 work=$(mktemp -d)
 bare=${CHROOT:-$work/bare}
 machine=$work/machine

@@ -50,7 +50,7 @@ seconds() { awk "BEGIN { printf \"%.1f\", $1 / 1e9 }"; }
 total=0
 for command in "${commands[@]}"; do
   begin=$(now)
-  eval "$command" >"$work/output.txt"
+  eval "$command" >"$work/output.txt" || { cat "$work/output.txt"; exit 1; }
   took=$(($(now) - begin))
   echo "$(seconds $took) s  $command"
   [[ $command == cmake* ]] || total=$((total + took))
