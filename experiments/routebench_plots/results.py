@@ -20,7 +20,7 @@ from urllib.parse import quote
 from .errors import PlotError
 from .naming import distinct_labels, printable
 
-SCHEMA_VERSION = "1"
+SCHEMA_VERSION = "2"
 DATABASE_NAME = "results.sqlite"
 
 VALID = "valid"

@@ -89,6 +89,8 @@ int main(int argc, char** argv) {
   routebench::add_new_planner_command(app, exit_code);
   routebench::add_plot_command(app, exit_code);
   routebench::add_export_command(app, exit_code);
+  routebench::add_merge_command(app, exit_code);
+  routebench::add_reproduce_command(app, exit_code);
   routebench::add_doctor_command(app, exit_code);
   app.footer(exit_codes + "\nEach command has its own help: routebench plan --help.");
   try {

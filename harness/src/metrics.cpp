@@ -74,6 +74,10 @@ constexpr std::array kMetrics{
 
 std::span<const MetricInfo> metric_table() { return kMetrics; }
 
+bool is_deterministic(std::string_view metric) {
+  return metric != "plan_wall_ns" && metric != "plan_cpu_ns" && metric != "peak_rss_bytes";
+}
+
 std::size_t metric_index(std::string_view name) {
   const auto* const found = std::ranges::find(kMetrics, name, &MetricInfo::name);
   if (found != kMetrics.end()) return static_cast<std::size_t>(found - kMetrics.begin());

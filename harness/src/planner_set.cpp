@@ -9,6 +9,7 @@
 #include "plugin_files.hpp"
 #include "process_planner.hpp"
 #include "routebench/geometry/error.hpp"
+#include "routebench/harness/config.hpp"
 #include "routebench/harness/pipeline.hpp"
 #include "routebench/planning/sha256.hpp"
 
@@ -58,6 +59,24 @@ Registry::Entry stand_in(const std::string& name, PlannerRole role, const std::s
   return entry;
 }
 
+/// Registers something under every name that nobody knows, if plugins have been refused.
+void stand_in_for_refused(PlannerSet& planners, const ExperimentConfig& config) {
+  std::string reason, origin;
+  for (const PluginRecord& plugin : planners.plugins) {
+    if (plugin.loaded || !plugin.by_name) continue;
+    if (!std::filesystem::exists(plugin.file)) refuse(plugin);
+    reason += "; plugin " + plugin.file + " was refused: " + plugin.refused_because;
+    if (origin.empty()) origin = plugin.file;
+  }
+  if (reason.empty()) return;
+  for (const ConfiguredContender& contender : config.contenders)
+    for (const auto& [slot, role] : {std::pair{&contender.spec.shell, PlannerRole::kShell},
+                                     std::pair{&contender.spec.fill, PlannerRole::kFill}})
+      if (*slot && !planners.registry.entries().contains((*slot)->planner))
+        planners.registry.add_entry(
+            stand_in((*slot)->planner, role, origin, "it is not there" + reason));
+}
+
 }  // namespace
 
 PlannerSet load_planners(std::span<const std::string> plugin_files) {
@@ -91,21 +110,16 @@ void require_all_loaded(const PlannerSet& planners) {
     if (!plugin.loaded && plugin.by_name) refuse(plugin);
 }
 
-void stand_in_for_refused(PlannerSet& planners, std::span<const ContenderSpec> contenders) {
-  std::string reason, origin;
-  for (const PluginRecord& plugin : planners.plugins) {
-    if (plugin.loaded || !plugin.by_name) continue;
-    if (!std::filesystem::exists(plugin.file)) refuse(plugin);
-    reason += "; plugin " + plugin.file + " was refused: " + plugin.refused_because;
-    if (origin.empty()) origin = plugin.file;
-  }
-  if (reason.empty()) return;
-  for (const ContenderSpec& contender : contenders)
-    for (const auto& [slot, role] : {std::pair{&contender.shell, PlannerRole::kShell},
-                                     std::pair{&contender.fill, PlannerRole::kFill}})
-      if (*slot && !planners.registry.entries().contains((*slot)->planner))
-        planners.registry.add_entry(
-            stand_in((*slot)->planner, role, origin, "it is not there" + reason));
+PlannerSet load_planners_for(const ExperimentConfig& config,
+                             std::span<const std::string> plugin_files) {
+  PlannerSet planners = load_planners(plugin_files);
+  std::vector<std::string> names;
+  for (const ConfiguredContender& contender : config.contenders)
+    for (const std::optional<SlotSpec>& slot : {contender.spec.shell, contender.spec.fill})
+      if (slot) names.push_back(slot->planner);
+  add_commands(planners, names, std::filesystem::absolute(config.file).parent_path());
+  stand_in_for_refused(planners, config);
+  return planners;
 }
 
 }  // namespace routebench

@@ -18,7 +18,7 @@ struct CsvFile {
 
 /// What tells a cell from the others, as the first columns of every table about cells.
 constexpr const char* kCellColumns =
-    "experiment, spec AS model, contender.name AS contender, setting.label AS setting, "
+    "run.experiment AS experiment, spec AS model, contender.name AS contender, setting.label AS setting, "
     "current_cell.seed AS seed, outcome";
 constexpr const char* kCellTables =
     " FROM current_cell JOIN run USING(run_id) JOIN model USING(model_id)"
@@ -50,8 +50,13 @@ std::vector<CsvFile> csv_files() {
            ", position")},
       {"layers.csv", about_cells("layer_index, z_mm, repaired" + metric_columns(),
                                  " JOIN layer_score USING(cell_id)", ", layer_index")},
-      {"timings.csv", about_cells("repetition, plan_wall_ns, plan_cpu_ns",
-                                  " JOIN timing_sample USING(cell_id)", ", repetition")},
+      {"timings.csv",
+       about_cells("repetition, plan_wall_ns, plan_cpu_ns, minor_faults, major_faults,"
+                   " peak_rss_bytes, taken.started_utc AS run_started_utc,"
+                   " taken.cpu AS cpu",
+                   " JOIN timing_sample USING(cell_id)"
+                   " JOIN run AS taken ON taken.run_id = timing_sample.run_id",
+                   ", repetition")},
       {"models.csv", "SELECT * FROM model ORDER BY model_id"},
       {"contenders.csv", "SELECT * FROM contender ORDER BY contender_id"},
       {"settings.csv", "SELECT * FROM setting ORDER BY setting_id"},

@@ -1,5 +1,9 @@
 #include "results_schema.hpp"
 
+#include <algorithm>
+#include <array>
+#include <vector>
+
 #include "routebench/geometry/error.hpp"
 #include "routebench/harness/metrics.hpp"
 #include "routebench/harness/results.hpp"
@@ -11,9 +15,10 @@ constexpr const char* kTables = R"sql(
 CREATE TABLE meta(key TEXT PRIMARY KEY, value TEXT NOT NULL);
 CREATE TABLE metric(position INTEGER PRIMARY KEY, name TEXT UNIQUE NOT NULL, label TEXT NOT NULL,
   unit TEXT NOT NULL, better TEXT NOT NULL, total TEXT NOT NULL, meaning TEXT NOT NULL);
-CREATE TABLE run(run_id INTEGER PRIMARY KEY, experiment TEXT NOT NULL, started_utc TEXT NOT NULL,
-  finished_utc TEXT, seed INTEGER NOT NULL, config_text TEXT NOT NULL,
-  config_resolved_json TEXT NOT NULL, command_line TEXT NOT NULL, routebench_version TEXT NOT NULL,
+CREATE TABLE run(run_id INTEGER PRIMARY KEY, run_key TEXT NOT NULL UNIQUE, experiment TEXT NOT NULL,
+  started_utc TEXT NOT NULL, finished_utc TEXT, seed INTEGER NOT NULL, config_text TEXT NOT NULL,
+  config_resolved_json TEXT NOT NULL, config_file TEXT NOT NULL, working_folder TEXT NOT NULL,
+  repair INTEGER NOT NULL, shard TEXT NOT NULL, command_line TEXT NOT NULL, routebench_version TEXT NOT NULL,
   git_commit TEXT, git_dirty INTEGER, compiler TEXT NOT NULL, compiler_flags TEXT NOT NULL,
   program_build_id TEXT NOT NULL, libraries_json TEXT NOT NULL, cpu TEXT NOT NULL, cores INTEGER NOT NULL,
   memory_bytes INTEGER NOT NULL, os TEXT NOT NULL, plugins_json TEXT NOT NULL);
@@ -28,8 +33,8 @@ CREATE TABLE setting(setting_id INTEGER PRIMARY KEY, label TEXT NOT NULL, task_j
 CREATE TABLE cell(cell_id INTEGER PRIMARY KEY, cell_key TEXT NOT NULL UNIQUE,
   run_id INTEGER NOT NULL REFERENCES run, model_id INTEGER NOT NULL REFERENCES model,
   contender_id INTEGER NOT NULL REFERENCES contender,
-  setting_id INTEGER NOT NULL REFERENCES setting, seed INTEGER NOT NULL, outcome TEXT NOT NULL,
-  reason TEXT NOT NULL, layers INTEGER NOT NULL, route_hash TEXT, started_utc TEXT NOT NULL,
+  setting_id INTEGER NOT NULL REFERENCES setting, seed INTEGER NOT NULL,
+  plugin_hashes TEXT NOT NULL, outcome TEXT NOT NULL, reason TEXT NOT NULL, layers INTEGER NOT NULL, route_hash TEXT, started_utc TEXT NOT NULL,
   cell_wall_s REAL NOT NULL);
 CREATE TABLE run_cell(run_id INTEGER NOT NULL REFERENCES run,
   cell_id INTEGER NOT NULL REFERENCES cell ON DELETE CASCADE,
@@ -40,7 +45,9 @@ CREATE TABLE cell_score(cell_id INTEGER NOT NULL REFERENCES cell ON DELETE CASCA
   metric TEXT NOT NULL REFERENCES metric(name), value REAL,
   PRIMARY KEY(cell_id, metric)) WITHOUT ROWID;
 CREATE TABLE timing_sample(cell_id INTEGER NOT NULL REFERENCES cell ON DELETE CASCADE,
-  repetition INTEGER NOT NULL, plan_wall_ns INTEGER NOT NULL, plan_cpu_ns INTEGER NOT NULL,
+  repetition INTEGER NOT NULL, run_id INTEGER NOT NULL REFERENCES run, plan_wall_ns INTEGER NOT NULL,
+  plan_cpu_ns INTEGER NOT NULL, minor_faults INTEGER NOT NULL, major_faults INTEGER NOT NULL,
+  peak_rss_bytes INTEGER NOT NULL,
   PRIMARY KEY(cell_id, repetition)) WITHOUT ROWID;
 CREATE TABLE layer_shape(model_id INTEGER NOT NULL REFERENCES model, layer_index INTEGER NOT NULL,
   z_mm REAL NOT NULL, wkt TEXT NOT NULL, PRIMARY KEY(model_id, layer_index)) WITHOUT ROWID;
@@ -114,6 +121,16 @@ std::string meta_value(Database& database, const char* key) {
   throw Error(ErrorKind::kBadInput, database.file().string() + ": " + why);
 }
 
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  if (values.size() % 2 == 1) return *middle;
+  return (*middle + *std::max_element(values.begin(), middle)) / 2;
+}
+
+/// The metrics that come from timing samples.
+constexpr std::array<std::string_view, 2> kTimeMetrics{"plan_wall_ns", "plan_cpu_ns"};
+
 }  // namespace
 
 void create_schema(Database& database, const std::string& experiment) {
@@ -129,8 +146,30 @@ void create_schema(Database& database, const std::string& experiment) {
   transaction.commit();
 }
 
+std::string experiment_of(Database& database) { return meta_value(database, "experiment"); }
+
+bool is_time_metric(std::string_view name) {
+  return std::find(kTimeMetrics.begin(), kTimeMetrics.end(), name) != kTimeMetrics.end();
+}
+
+void update_plan_times(Database& database, std::int64_t cell_id) {
+  for (const std::string_view metric : kTimeMetrics) {
+    std::vector<double> samples;
+    Statement select(database,
+                     "SELECT " + std::string(metric) + " FROM timing_sample WHERE cell_id = ?");
+    select.bind(cell_id);
+    while (select.next()) samples.push_back(select.real(0));
+    if (samples.empty()) continue;
+    Statement(database, "INSERT OR REPLACE INTO cell_score VALUES(?, ?, ?)")
+        .bind(cell_id)
+        .bind(metric)
+        .bind(median(std::move(samples)))
+        .run();
+  }
+}
+
 void require_experiment(Database& database, const std::string& experiment) {
-  const std::string found = meta_value(database, "experiment");
+  const std::string found = experiment_of(database);
   if (found.empty())
     refuse(database,
            "is a database, but none of routebench's results; give another folder with --out");

@@ -1,5 +1,4 @@
-#include <algorithm>
-#include <array>
+#include <random>
 #include <sstream>
 #include <system_error>
 
@@ -38,18 +37,13 @@ void configure(Database& database) {
   database.run("PRAGMA journal_mode = DELETE; PRAGMA synchronous = FULL");
 }
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  if (values.size() % 2 == 1) return *middle;
-  return (*middle + *std::max_element(values.begin(), middle)) / 2;
-}
-
-/// The metrics that come from timing samples.
-constexpr std::array<std::string_view, 2> kTimeMetrics{"plan_wall_ns", "plan_cpu_ns"};
-
-bool is_time_metric(std::string_view name) {
-  return std::find(kTimeMetrics.begin(), kTimeMetrics.end(), name) != kTimeMetrics.end();
+/// Tells a run from all others, on whatever machine.
+std::string random_key() {
+  constexpr std::string_view kDigits = "0123456789abcdef";
+  std::random_device random;
+  std::string key;
+  for (int i = 0; i < 32; ++i) key += kDigits[random() % kDigits.size()];
+  return key;
 }
 
 std::string wkt_of(const Layer& layer) {
@@ -112,7 +106,6 @@ struct ResultsWriter::Impl {
   void add_scores(std::int64_t cell_id, const Scores& totals);
   void add_layers(std::int64_t cell_id, const std::vector<LayerScore>& layers);
   void add_sample(std::int64_t cell_id, const TimingSample& sample);
-  void update_plan_times(std::int64_t cell_id);
   void drop_cell_at_limit(const std::string& cell_key);
 
   fs::path folder;
@@ -147,11 +140,15 @@ void ResultsWriter::Impl::add_layers(std::int64_t cell_id, const std::vector<Lay
 }
 
 void ResultsWriter::Impl::add_sample(std::int64_t cell_id, const TimingSample& sample) {
-  sql("INSERT INTO timing_sample VALUES(?, ?, ?, ?)")
+  sql("INSERT INTO timing_sample VALUES(?, ?, ?, ?, ?, ?, ?, ?)")
       .bind(cell_id)
       .bind(std::int64_t{sample.repetition})
+      .bind(run_id)
       .bind(sample.cell.wall_ns)
       .bind(sample.cell.cpu_ns)
+      .bind(sample.minor_faults)
+      .bind(sample.major_faults)
+      .bind(sample.peak_rss_bytes)
       .run();
   if (sample.repetition == 0) {
     Statement order = sql("SELECT layer_index FROM layer_score WHERE cell_id = ? ORDER BY 1");
@@ -168,22 +165,7 @@ void ResultsWriter::Impl::add_sample(std::int64_t cell_id, const TimingSample& s
           .run();
     }
   }
-  update_plan_times(cell_id);
-}
-
-void ResultsWriter::Impl::update_plan_times(std::int64_t cell_id) {
-  for (const std::string_view metric : kTimeMetrics) {
-    std::vector<double> samples;
-    Statement select =
-        sql("SELECT " + std::string(metric) + " FROM timing_sample WHERE cell_id = ?");
-    select.bind(cell_id);
-    while (select.next()) samples.push_back(select.real(0));
-    sql("INSERT OR REPLACE INTO cell_score VALUES(?, ?, ?)")
-        .bind(cell_id)
-        .bind(metric)
-        .bind(median(std::move(samples)))
-        .run();
-  }
+  update_plan_times(*database, cell_id);
 }
 
 void ResultsWriter::Impl::drop_cell_at_limit(const std::string& cell_key) {
@@ -210,12 +192,18 @@ void ResultsWriter::together(const std::function<void()>& writes) {
 void ResultsWriter::begin_run(const RunRecord& run) {
   const Provenance& from = run.provenance;
   Statement insert = impl_->sql(
-      "INSERT INTO run VALUES(NULL, ?, ?, NULL, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
-  insert.bind(std::string_view(run.experiment))
+      "INSERT INTO run VALUES(NULL, ?, ?, ?, NULL, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?,"
+      " ?, ?, ?, ?)");
+  insert.bind(std::string_view(random_key()))
+      .bind(std::string_view(run.experiment))
       .bind(std::string_view(utc_now()))
       .bind(static_cast<std::int64_t>(run.seed))
       .bind(std::string_view(run.config_text))
       .bind(std::string_view(run.config_resolved_json))
+      .bind(std::string_view(run.config_file.string()))
+      .bind(std::string_view(run.working_folder.string()))
+      .bind(std::int64_t{run.repair})
+      .bind(std::string_view(run.shard))
       .bind(std::string_view(run.command_line))
       .bind(std::string_view(from.routebench_version))
       .bind(from.git_commit);
@@ -310,13 +298,14 @@ void ResultsWriter::reuse_cell(std::int64_t cell_id) {
 std::int64_t ResultsWriter::add_cell(const CellRecord& cell) {
   Transaction transaction(*impl_->database);
   impl_->drop_cell_at_limit(cell.cell_key);
-  impl_->sql("INSERT INTO cell VALUES(NULL, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
+  impl_->sql("INSERT INTO cell VALUES(NULL, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
       .bind(std::string_view(cell.cell_key))
       .bind(impl_->run_id)
       .bind(cell.model_id)
       .bind(cell.contender_id)
       .bind(cell.setting_id)
       .bind(static_cast<std::int64_t>(cell.seed))
+      .bind(std::string_view(cell.plugin_hashes))
       .bind(to_string(cell.outcome))
       .bind(std::string_view(cell.reason))
       .bind(static_cast<std::int64_t>(cell.layers))
@@ -354,5 +343,7 @@ void ResultsWriter::change_outcome(std::int64_t cell_id, Outcome outcome,
       .bind(cell_id)
       .run();
 }
+
+Database& ResultsWriter::database() noexcept { return *impl_->database; }
 
 }  // namespace routebench

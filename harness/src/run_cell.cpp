@@ -71,6 +71,8 @@ std::string encode(const CellResult& result) {
     out.add(std::uint64_t{route.layer_index}).add(std::string_view(route.strokes_json));
   out.add(std::uint64_t{result.timing.layers.size()});
   for (const PlanTime& time : result.timing.layers) out.add(time.wall_ns).add(time.cpu_ns);
+  out.add(result.timing.minor_faults).add(result.timing.major_faults);
+  out.add(result.timing.peak_rss_bytes);
   return out.bytes();
 }
 
@@ -103,6 +105,9 @@ CellResult decode(const std::string& bytes) {
     result.timing.cell.wall_ns += time.wall_ns;
     result.timing.cell.cpu_ns += time.cpu_ns;
   }
+  result.timing.minor_faults = in.integer();
+  result.timing.major_faults = in.integer();
+  result.timing.peak_rss_bytes = in.integer();
   in.finish();
   return result;
 }
@@ -117,18 +122,27 @@ ParallelFor told_loop(const std::vector<Layer>& layers, ChildProgress& progress)
   };
 }
 
-std::vector<PlannedLayer> plan(const CellWork& work, ChildProgress& progress) {
+struct Planned {
+  std::vector<PlannedLayer> layers;
+  TimingSample timing;
+};
+
+Planned plan(const CellWork& work, ChildProgress& progress) {
   const SlicedModel& sliced = work.model->sliced;
   progress.phase = ChildProgress::kPlanning;
-  return plan_layers(*work.contender, *work.model, all_layers(sliced), work.judge->task(),
-                     work.seed, {}, told_loop(sliced.layers, progress));
-}
-
-TimingSample timing_of(const std::vector<PlannedLayer>& planned) {
-  TimingSample sample;
-  for (const PlannedLayer& layer : planned)
-    sample.layers.push_back({layer.plan_wall_ns, layer.plan_cpu_ns});
-  return sample;
+  rusage before{}, after{};
+  getrusage(RUSAGE_SELF, &before);
+  Planned planned;
+  planned.layers = plan_layers(*work.contender, *work.model, all_layers(sliced), work.judge->task(),
+                               work.seed, {}, told_loop(sliced.layers, progress));
+  getrusage(RUSAGE_SELF, &after);
+  for (const PlannedLayer& layer : planned.layers)
+    planned.timing.layers.push_back({layer.plan_wall_ns, layer.plan_cpu_ns});
+  planned.timing.minor_faults = after.ru_minflt - before.ru_minflt;
+  planned.timing.major_faults = after.ru_majflt - before.ru_majflt;
+  // Resident pages that were inherited are part of it, for every cell alike.
+  planned.timing.peak_rss_bytes = static_cast<std::int64_t>(work.contender->peak_rss_bytes());
+  return planned;
 }
 
 std::string place_of(const ChildEnd& end) {
@@ -153,11 +167,10 @@ CellResult without_result(Outcome outcome, const std::string& reason) {
 }  // namespace
 
 std::string execute_cell(const CellWork& work, ChildProgress& progress) {
-  const std::vector<PlannedLayer> planned = plan(work, progress);
+  Planned plan_of_cell = plan(work, progress);
+  const std::vector<PlannedLayer>& planned = plan_of_cell.layers;
   CellResult result;
-  result.timing = timing_of(planned);
-  // Resident pages that were inherited are part of it, for every cell alike.
-  const double peak_bytes = work.contender->peak_rss_bytes();
+  result.timing = std::move(plan_of_cell.timing);
 
   progress.phase = ChildProgress::kJudging;
   const SlicedModel& sliced = work.model->sliced;
@@ -167,7 +180,8 @@ std::string execute_cell(const CellWork& work, ChildProgress& progress) {
   result.reason = std::move(judged.verdict.reason);
   result.route_hash = hash_of_route(planned);
   result.totals = std::move(judged.totals);
-  result.totals.at(metric_index("peak_rss_bytes")) = peak_bytes;
+  result.totals.at(metric_index("peak_rss_bytes")) =
+      static_cast<double>(result.timing.peak_rss_bytes);
   result.layers = std::move(judged.layers);
   for (const std::size_t i : work.kept_layers)
     result.routes.push_back(
@@ -176,11 +190,11 @@ std::string execute_cell(const CellWork& work, ChildProgress& progress) {
 }
 
 std::string time_cell(const CellWork& work, ChildProgress& progress) {
-  const std::vector<PlannedLayer> planned = plan(work, progress);
+  Planned planned = plan(work, progress);
   CellResult result;
   result.outcome = Outcome::kValid;
-  result.timing = timing_of(planned);
-  result.route_hash = hash_of_route(planned);
+  result.timing = std::move(planned.timing);
+  result.route_hash = hash_of_route(planned.layers);
   return encode(result);
 }
 

@@ -8,6 +8,7 @@
 #include "json_parts.hpp"
 #include "routebench/geometry/error.hpp"
 #include "routebench/planning/sha256.hpp"
+#include "run_forecast.hpp"
 #include "run_progress.hpp"
 
 namespace routebench {
@@ -71,16 +72,16 @@ ContenderRecord record_of(const ConfiguredContender& configured, const Contender
   return record;
 }
 
-/// Fingerprints of the plugin files from which a contender's planners come.
+/// Fingerprints of the plugin files from which a contender's planners come, with a space between.
 std::string plugin_hashes(const ContenderSpec& spec, const PlannerSet& planners) {
-  ByteWriter hashes;
+  std::string hashes;
   for (const std::optional<SlotSpec>& slot : {spec.shell, spec.fill}) {
     if (!slot) continue;
     const std::string& origin = planners.registry.at(slot->planner).origin;
     for (const PluginRecord& plugin : planners.plugins)
-      if (plugin.file == origin) hashes.add(std::string_view(plugin.sha256));
+      if (plugin.file == origin) hashes += (hashes.empty() ? "" : " ") + plugin.sha256;
   }
-  return hashes.bytes();
+  return hashes;
 }
 
 SettingRecord record_of(const Setting& setting) {
@@ -111,6 +112,19 @@ std::string label_of(const PlannedCell& cell, const ExperimentConfig& config) {
   return label;
 }
 
+/// "walls, density=1" as itself, "walls" and "density=1".
+std::vector<std::string> parts_of_label(const std::string& label) {
+  constexpr std::string_view kSeparator = ", ";
+  std::vector<std::string> parts{label};
+  if (label.find(kSeparator) == std::string::npos) return parts;
+  for (std::size_t begin = 0; begin < label.size();) {
+    const std::size_t end = std::min(label.find(kSeparator, begin), label.size());
+    parts.push_back(label.substr(begin, end - begin));
+    begin = end + kSeparator.size();
+  }
+  return parts;
+}
+
 bool is_among(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
@@ -137,18 +151,28 @@ void require_known_choice(const ExperimentConfig& config, const RunnerOptions& o
   for (const ConfiguredModel& model : config.models) models.insert(model.spec);
   require_among(options.only_contenders, contenders, "contender");
   require_among(options.only_models, models, "model");
+  std::set<std::string> settings;
+  for (const Setting& setting : config.settings)
+    for (const std::string& part : parts_of_label(setting.label)) settings.insert(part);
+  require_among(options.only_settings, settings, "setting");
 }
 
-bool is_chosen(const ReadyContender& contender, const ReadyModel& model,
-               const RunnerOptions& options) {
+/// Whether the options let a cell be executed; `place` counts all cells of the config.
+bool is_chosen(const PlannedCell& cell, std::size_t place, const RunnerOptions& options) {
   const auto fits = [](const std::vector<std::string>& wanted,
-                       std::initializer_list<std::string> names) {
+                       const std::vector<std::string>& names) {
     return wanted.empty() || std::any_of(names.begin(), names.end(), [&](const std::string& name) {
              return is_among(wanted, name);
            });
   };
-  return fits(options.only_contenders, {contender.record.name, contender.record.base_name}) &&
-         fits(options.only_models, {model.record.spec});
+  const ContenderRecord& contender = cell.contender->record;
+  const std::string& spec = cell.model->record.spec;
+  const std::string& label = cell.setting->record.label;
+  if (options.shard && place % options.shard->count != options.shard->number - 1) return false;
+  if (options.only_cells && !options.only_cells->contains({spec, contender.name, label, cell.seed}))
+    return false;
+  return fits(options.only_contenders, {contender.name, contender.base_name}) &&
+         fits(options.only_models, {spec}) && fits(options.only_settings, parts_of_label(label));
 }
 
 /// Models by their place in the config and by shape: settings that differ in nothing else share
@@ -166,7 +190,8 @@ void make_ready(const ExperimentConfig& config, std::size_t place_in_config,
     if (place != nullptr) continue;
     PreparedModel prepared = prepared_model(model, setting.task, before, slicing, parallel_for);
     ModelRecord record = record_of(model.spec, prepared.sliced);
-    plan.models.push_back({std::move(record), std::move(prepared)});
+    const double work = work_of(prepared, setting.task);
+    plan.models.push_back({std::move(record), std::move(prepared), work});
     place = &plan.models.back();
     before.emplace_back(setting.task, place);
   }
@@ -195,10 +220,13 @@ void add_model(const ExperimentConfig& config, std::size_t place_in_config,
 
 void add_cells(const ExperimentConfig& config, const RunnerOptions& options,
                const ModelTable& models, RunPlan& plan) {
+  // Counts what is left out, too: shards are the same on every machine.
+  std::size_t place = 0;
   for (std::size_t s = 0; s < config.settings.size(); ++s)
     for (std::size_t m = 0; m < config.models.size(); ++m)
       for (const std::uint64_t seed : config.seeds)
         for (const ReadyContender& contender : plan.contenders) {
+          const std::size_t place_of_cell = place++;
           const auto ready = models.find({m, shape_of(config.settings[s].task)});
           if (ready == models.end()) continue;  // optional, and left out
           PlannedCell cell;
@@ -206,7 +234,7 @@ void add_cells(const ExperimentConfig& config, const RunnerOptions& options,
           cell.contender = &contender;
           cell.setting = &plan.settings[s];
           cell.seed = seed;
-          cell.chosen = is_chosen(contender, *cell.model, options);
+          cell.chosen = is_chosen(cell, place_of_cell, options);
           cell.key = key_of(cell);
           cell.label = label_of(cell, config);
           plan.cells.push_back(std::move(cell));
@@ -234,7 +262,7 @@ RunPlan make_plan(const ExperimentConfig& config, const PlannerSet& planners,
                        static_cast<double>(config.models.size()));
   for (std::size_t m = 0; m < config.models.size(); ++m) {
     add_model(config, m, {.repair = options.repair}, parallel_for, plan, models);
-    progress.step(1, "", false);
+    progress.step(1, {});
   }
   add_cells(config, options, models, plan);
   return plan;

@@ -18,6 +18,7 @@ namespace routebench {
 struct ReadyModel {
   ModelRecord record;
   PreparedModel prepared;
+  double work = 0;  ///< how much there is to plan and to judge; see work_of
 };
 
 struct ReadyContender {
@@ -38,7 +39,7 @@ struct PlannedCell {
   const ReadyContender* contender = nullptr;
   const ReadySetting* setting = nullptr;
   std::uint64_t seed = 1;
-  bool chosen = true;  ///< not left out by `only_*`
+  bool chosen = true;  ///< not left out by the options
 
   /// "model · contender · setting · seed 2", as far as there is more than one.
   std::string label;

@@ -9,9 +9,12 @@
 #include "routebench/harness/parallel.hpp"
 #include "run_cell.hpp"
 #include "run_child.hpp"
+#include "run_forecast.hpp"
 #include "run_interrupt.hpp"
 #include "run_plan.hpp"
 #include "run_progress.hpp"
+#include "run_redo.hpp"
+#include "run_state.hpp"
 
 namespace routebench {
 namespace {
@@ -19,90 +22,6 @@ namespace {
 int jobs_of(const ExperimentConfig& config, const RunnerOptions& options) {
   const int jobs = options.jobs.value_or(config.run.jobs);
   return jobs > 0 ? jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-}
-
-/// A cell on its way.
-struct CellState {
-  const PlannedCell* cell = nullptr;
-  std::int64_t cell_id = 0;  ///< 0: not in the database
-  Outcome outcome = Outcome::kFailed;
-  std::optional<std::string> route_hash;
-  std::vector<int> repetitions;  ///< that have been taken
-
-  [[nodiscard]] bool has_route() const {
-    return outcome == Outcome::kValid || outcome == Outcome::kOffTask;
-  }
-};
-
-/// A cell that ran into a limit which has been raised since gets another chance.
-bool may_go_further(const KnownCell& known, const RunOptions& run) {
-  return (known.outcome == Outcome::kTimedOut && run.timeout_s > known.timeout_s) ||
-         (known.outcome == Outcome::kOutOfMemory && run.memory_mb > known.memory_mb);
-}
-
-/// Cells in the plan's order with what is known of them.
-std::vector<CellState> states_of(const RunPlan& plan, const KnownCells& known,
-                                 const RunOptions& run) {
-  std::vector<CellState> states;
-  for (const PlannedCell& cell : plan.cells) {
-    CellState state{&cell, 0, Outcome::kFailed, {}, {}};
-    const auto found = known.find(cell.key);
-    if (found != known.end() && !(cell.chosen && may_go_further(found->second, run)))
-      state = {&cell, found->second.cell_id, found->second.outcome, found->second.route_hash,
-               found->second.repetitions};
-    states.push_back(std::move(state));
-  }
-  return states;
-}
-
-bool is_to_execute(const CellState& state) { return state.cell->chosen && state.cell_id == 0; }
-
-std::vector<int> missing_repetitions(const CellState& state, int wanted) {
-  std::vector<int> missing;
-  if (!state.cell->chosen || !state.has_route()) return missing;
-  for (int i = 0; i < wanted; ++i)
-    if (!std::binary_search(state.repetitions.begin(), state.repetitions.end(), i))
-      missing.push_back(i);
-  return missing;
-}
-
-double weight_of(const PlannedCell& cell) {
-  return 1 + static_cast<double>(cell.model->record.layers);
-}
-
-std::string line_about(const PlannedCell& cell, const CellResult& result) {
-  const std::string line = cell.label + ": " + std::string(to_string(result.outcome));
-  return result.reason.empty() ? line : line + " (" + result.reason + ")";
-}
-
-/// One timing sample to be taken.
-struct Repetition {
-  std::size_t cell = 0;
-  int number = 0;
-};
-
-/// The order of samples: rounds, each with every cell in random order, so that a slow moment of the
-/// machine hits all contenders alike.
-std::vector<Repetition> timing_order(const std::vector<CellState>& states, int repetitions,
-                                     std::uint64_t seed) {
-  // splitmix64: the same order everywhere, which std::shuffle does not promise.
-  const auto next = [&seed] {
-    std::uint64_t z = (seed += 0x9e3779b97f4a7c15);
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111eb;
-    return z ^ (z >> 31);
-  };
-  std::vector<std::vector<Repetition>> rounds(static_cast<std::size_t>(repetitions));
-  for (std::size_t i = 0; i < states.size(); ++i)
-    for (const int number : missing_repetitions(states[i], repetitions))
-      rounds[static_cast<std::size_t>(number)].push_back({i, number});
-  std::vector<Repetition> order;
-  for (std::vector<Repetition>& round : rounds) {
-    for (std::size_t left = round.size(); left > 1; --left)
-      std::swap(round[left - 1], round[next() % left]);
-    order.insert(order.end(), round.begin(), round.end());
-  }
-  return order;
 }
 
 /// The execution of a plan.
@@ -123,14 +42,15 @@ class Execution {
   RunSummary run();
 
  private:
-  [[nodiscard]] bool is_done(const KnownCells& known) const;
-  void tell_what_was_found(const KnownCells& known) const;
+  [[nodiscard]] bool is_done() const;
+  void tell_what_was_found() const;
+  void tell_what_is_redone() const;
   void begin();
   void execute_cells();
   void take_times();
   void store(CellState& state, const ChildEnd& end, const std::string& started_utc,
              RunProgress& progress);
-  std::string store_time(CellState& state, int repetition, const ChildEnd& end);
+  StepNews store_time(CellState& state, int repetition, const ChildEnd& end);
   [[nodiscard]] CellWork work_of(const PlannedCell& cell) const;
 
   const ExperimentConfig& config_;
@@ -143,6 +63,9 @@ class Execution {
   InterruptWatch interrupt_;
   ResultsWriter results_;
   std::vector<CellState> states_;
+  KnownCells known_;
+  std::map<const PlannedCell*, Predecessor> predecessors_;
+  std::optional<Forecast> forecast_;
   std::map<const ReadyModel*, std::int64_t> model_ids_;
   std::map<const ReadyContender*, std::int64_t> contender_ids_;
   std::map<const ReadySetting*, std::int64_t> setting_ids_;
@@ -150,29 +73,35 @@ class Execution {
 };
 
 /// True if the database already is what this run would make of it.
-bool Execution::is_done(const KnownCells& known) const {
-  const auto current = std::count_if(known.begin(), known.end(),
+bool Execution::is_done() const {
+  const auto current = std::count_if(known_.begin(), known_.end(),
                                      [](const auto& entry) { return entry.second.current; });
   if (static_cast<std::size_t>(current) != summary_.found) return false;
   return std::all_of(states_.begin(), states_.end(), [&](const CellState& state) {
     if (state.cell_id == 0) return !state.cell->chosen;
-    return known.at(state.cell->key).current &&
+    return known_.at(state.cell->key).current &&
            missing_repetitions(state, config_.run.repetitions).empty();
   });
 }
 
-void Execution::tell_what_was_found(const KnownCells& known) const {
+void Execution::tell_what_was_found() const {
   if (summary_.found == 0) return;
-  *log_.out << summary_.found << " of " << plan_.cells.size()
-            << " cells are in the database already\n";
+  tell(log_, std::to_string(summary_.found) + " of " + std::to_string(plan_.cells.size()) +
+                 " cells are in the database already");
   const std::string build_id = collect_provenance().program_build_id;
   const auto others = std::count_if(states_.begin(), states_.end(), [&](const CellState& state) {
-    return state.cell_id != 0 && known.at(state.cell->key).program_build_id != build_id;
+    return state.cell_id != 0 && known_.at(state.cell->key).program_build_id != build_id;
   });
   if (others > 0)
-    *log_.out << others
-              << " of them were executed by another build of routebench; --fresh executes "
-              << "all anew\n";
+    tell(log_, std::to_string(others) +
+                   " of them were executed by another build of routebench; --fresh executes all "
+                   "anew");
+}
+
+void Execution::tell_what_is_redone() const {
+  for (const CellState& state : states_)
+    if (const auto found = predecessors_.find(state.cell); found != predecessors_.end())
+      tell_redo(log_, state.cell->label, found->second.changed);
 }
 
 /// Stores all that cells refer to, and the run itself.
@@ -182,6 +111,10 @@ void Execution::begin() {
   record.seed = config_.seeds.front();
   record.config_text = config_.text;
   record.config_resolved_json = resolved_json(config_, planners_.registry);
+  record.config_file = config_.file;
+  record.working_folder = std::filesystem::current_path();
+  record.repair = options_.repair;
+  if (options_.shard) record.shard = to_string(*options_.shard);
   record.command_line = options_.command_line;
   record.provenance = collect_provenance();
   Json plugins = Json::array();
@@ -220,6 +153,7 @@ void Execution::store(CellState& state, const ChildEnd& end, const std::string& 
   record.contender_id = contender_ids_.at(cell.contender);
   record.setting_id = setting_ids_.at(cell.setting);
   record.seed = cell.seed;
+  record.plugin_hashes = cell.contender->plugin_hashes;
   record.outcome = result.outcome;
   record.reason = result.reason;
   record.layers = cell.model->record.layers;
@@ -239,19 +173,20 @@ void Execution::store(CellState& state, const ChildEnd& end, const std::string& 
   state.cell_id = results_.add_cell(record);
   ++summary_.executed;
 
-  progress.step(weight_of(cell), line_about(cell, result), result.outcome != Outcome::kValid);
+  progress.step(forecast_->cell_s(cell), {cell.label, result.outcome, result.reason});
 }
 
 void Execution::execute_cells() {
   std::vector<std::size_t> to_do;
   double weight = 0;
   for (std::size_t i = 0; i < states_.size(); ++i) {
-    if (!is_to_execute(states_[i])) continue;
+    if (!states_[i].is_to_execute()) continue;
     to_do.push_back(i);
-    weight += weight_of(*states_[i].cell);
+    weight += forecast_->cell_s(*states_[i].cell);
   }
   if (to_do.empty()) return;
-  *log_.out << "executing " << to_do.size() << " cells, " << jobs_ << " at a time\n";
+  tell(log_, "executing " + std::to_string(to_do.size()) + " cells, " + std::to_string(jobs_) +
+                 " at a time");
   RunProgress progress(log_, "cell", to_do.size(), weight);
   std::vector<std::string> started_utc(states_.size());
   ChildPool pool(limits_);
@@ -271,7 +206,7 @@ void Execution::execute_cells() {
 }
 
 /// Returns what there is to tell: nothing, unless the cell did not do again what it did before.
-std::string Execution::store_time(CellState& state, int repetition, const ChildEnd& end) {
+StepNews Execution::store_time(CellState& state, int repetition, const ChildEnd& end) {
   CellResult result = cell_result_of(end, limits_);
   const std::string which = "repetition " + std::to_string(repetition);
   if (result.outcome == Outcome::kValid && result.route_hash != state.route_hash) {
@@ -283,7 +218,7 @@ std::string Execution::store_time(CellState& state, int repetition, const ChildE
   if (result.outcome != Outcome::kValid) {
     results_.change_outcome(state.cell_id, result.outcome, result.reason);
     state.outcome = result.outcome;
-    return line_about(*state.cell, result);
+    return {state.cell->label, result.outcome, result.reason};
   }
   result.timing.repetition = repetition;
   results_.add_timing(state.cell_id, result.timing);
@@ -295,13 +230,13 @@ void Execution::take_times() {
       timing_order(states_, config_.run.repetitions, config_.seeds.front());
   if (order.empty() || interrupt_.interrupted()) return;
   double weight = 0;
-  for (const Repetition& sample : order) weight += weight_of(*states_[sample.cell].cell);
-  *log_.out << "taking " << order.size() << " timing samples, one at a time\n";
+  for (const Repetition& sample : order) weight += forecast_->sample_s(*states_[sample.cell].cell);
+  tell(log_, "taking " + std::to_string(order.size()) + " timing samples, one at a time");
   RunProgress progress(log_, "timing sample", order.size(), weight);
   ChildPool pool(limits_);
   for (const Repetition& sample : order) {
     CellState& state = states_[sample.cell];
-    std::string line;
+    StepNews news;
     if (state.has_route()) {
       pool.start(0, [work = work_of(*state.cell)](ChildProgress& where) {
         return time_cell(work, where);
@@ -309,71 +244,96 @@ void Execution::take_times() {
       while (pool.running() > 0) {
         if (interrupt_.interrupted()) return;
         for (const ChildPool::Finished& finished : pool.wait())
-          line = store_time(state, sample.number, finished.end);
+          news = store_time(state, sample.number, finished.end);
       }
     }
-    progress.step(weight_of(*state.cell), line, !line.empty());
+    progress.step(forecast_->sample_s(*state.cell), news);
   }
 }
 
 RunSummary Execution::run() {
   // Only now: whatever is wrong with config, models or results has been said in a line of its own.
-  for (const std::string& note : plan_.notes) *log_.out << note << '\n';
+  for (const std::string& note : plan_.notes) tell(log_, note);
   summary_.file = results_.file();
-  const KnownCells known = results_.known_cells();
-  states_ = states_of(plan_, known, config_.run);
+  known_ = results_.known_cells();
+  states_ = states_of(plan_, known_, config_.run);
+  predecessors_ = predecessors_of(states_, known_, config_.run);
+  forecast_.emplace(states_, known_, predecessors_);
   summary_.found = static_cast<std::size_t>(std::count_if(
       states_.begin(), states_.end(), [](const CellState& state) { return state.cell_id != 0; }));
-  tell_what_was_found(known);
-  if (is_done(known)) return summary_;
+  tell_what_was_found();
+  tell_what_is_redone();
+  if (is_done()) return summary_;
   begin();
   execute_cells();
   take_times();
   summary_.interrupted = interrupt_.interrupted();
-  summary_.left =
-      static_cast<std::size_t>(std::count_if(states_.begin(), states_.end(), is_to_execute));
+  summary_.left = static_cast<std::size_t>(
+      std::count_if(states_.begin(), states_.end(),
+                    [](const CellState& state) { return state.is_to_execute(); }));
   if (summary_.interrupted) return summary_;
   results_.finish_run();
   return summary_;
 }
 
-/// Says what a run would execute.
-RunSummary dry_run(const ExperimentConfig& config, const RunPlan& plan,
-                   const RunnerOptions& options, const RunLog& log) {
-  const KnownCells known = options.fresh ? KnownCells{} : known_cells(options.out, config.name);
-  for (const std::string& note : plan.notes) *log.out << note << '\n';
-  RunSummary summary;
-  double seconds = 0;
-  std::size_t timed = 0;
-  for (const CellState& state : states_of(plan, known, config.run)) {
-    if (state.cell_id != 0) {
-      ++summary.found;
-      seconds += known.at(state.cell->key).cell_wall_s;
-      ++timed;
-    }
-    if (!is_to_execute(state)) continue;
-    ++summary.left;
-    *log.out << "would execute " << state.cell->label << '\n';
-  }
-  *log.out << summary.left << " cells to execute, " << summary.found << " done";
-  if (timed > 0 && summary.left > 0)
-    *log.out << "; those took " << duration_text(seconds / static_cast<double>(timed))
-             << " each, so about "
-             << duration_text(seconds / static_cast<double>(timed) *
-                              static_cast<double>(summary.left) / jobs_of(config, options))
-             << " and the timing samples";
-  *log.out << '\n';
-  return summary;
-}
-
 }  // namespace
+
+std::string to_string(const Shard& shard) {
+  return std::to_string(shard.number) + "/" + std::to_string(shard.count);
+}
 
 RunSummary run_experiment(const ExperimentConfig& config, const PlannerSet& planners,
                           const RunnerOptions& options, const RunLog& log) {
   const RunPlan plan =
       make_plan(config, planners, options, parallel_loop(jobs_of(config, options)), log);
-  if (options.dry_run) return dry_run(config, plan, options, log);
   return Execution(config, planners, plan, options, log).run();
+}
+
+Foresight foresee_experiment(const ExperimentConfig& config, const PlannerSet& planners,
+                             const RunnerOptions& options, const RunLog& log) {
+  Foresight foresight;
+  foresight.jobs = jobs_of(config, options);
+  const RunPlan plan = make_plan(config, planners, options, parallel_loop(foresight.jobs), log);
+  const KnownCells known = options.fresh ? KnownCells{} : known_cells(options.out, config.name);
+  for (const std::string& note : plan.notes) tell(log, note);
+  std::vector<CellState> states = states_of(plan, known, config.run);
+  const auto predecessors = predecessors_of(states, known, config.run);
+  const Forecast forecast(states, known, predecessors);
+  foresight.known_cells = forecast.known_cells();
+  for (CellState& state : states) {
+    if (state.cell_id != 0) ++foresight.found;
+    if (state.is_to_execute()) {
+      const auto before = predecessors.find(state.cell);
+      foresight.cells.push_back({state.cell->label,
+                                 before == predecessors.end() ? "" : before->second.changed,
+                                 forecast.cell_s(*state.cell)});
+      foresight.cells_s += foresight.cells.back().seconds / foresight.jobs;
+      // It is going to be valid, for all that is known.
+      state.outcome = Outcome::kValid;
+      if (foresight.jobs == 1) state.repetitions.push_back(0);
+    }
+    const std::size_t samples = missing_repetitions(state, config.run.repetitions).size();
+    foresight.samples += samples;
+    foresight.samples_s += static_cast<double>(samples) * forecast.sample_s(*state.cell);
+  }
+  return foresight;
+}
+
+void write_foresight(std::ostream& out, const Foresight& foresight) {
+  for (const ForeseenCell& cell : foresight.cells)
+    out << (cell.why.empty() ? "would execute " : "would redo ") << cell.label
+        << (cell.why.empty() ? "" : ": " + cell.why) << '\n';
+  out << foresight.cells.size() << " cells to execute, " << foresight.found << " done, "
+      << foresight.samples << " timing samples to take\n";
+  if (foresight.cells.empty() && foresight.samples == 0) return;
+  out << "about " << duration_text(foresight.cells_s + foresight.samples_s) << ": "
+      << duration_text(foresight.cells_s) << " for cells, " << foresight.jobs << " at a time, and "
+      << duration_text(foresight.samples_s) << " for timing samples, one at a time\n";
+  if (foresight.known_cells > 0)
+    out << "estimated from the times of " << foresight.known_cells << " cells in the database\n";
+  else
+    out << "estimated from the models' sizes alone (layers, contours, lengths to be laid), so it "
+           "may be out by a factor of five\n";
 }
 
 }  // namespace routebench

@@ -75,8 +75,10 @@ CREATE TABLE layer_score(cell_id INTEGER NOT NULL REFERENCES cell,
   repaired INTEGER NOT NULL, {columns},
   PRIMARY KEY(cell_id, layer_index)) WITHOUT ROWID;
 CREATE TABLE timing_sample(cell_id INTEGER NOT NULL REFERENCES cell,
-  repetition INTEGER NOT NULL, plan_wall_ns INTEGER NOT NULL,
-  plan_cpu_ns INTEGER NOT NULL,
+  repetition INTEGER NOT NULL, run_id INTEGER NOT NULL REFERENCES run,
+  plan_wall_ns INTEGER NOT NULL, plan_cpu_ns INTEGER NOT NULL,
+  minor_faults INTEGER NOT NULL, major_faults INTEGER NOT NULL,
+  peak_rss_bytes INTEGER NOT NULL,
   PRIMARY KEY(cell_id, repetition)) WITHOUT ROWID;
 CREATE TABLE layer_shape(model_id INTEGER NOT NULL REFERENCES model,
   layer_index INTEGER NOT NULL, z_mm REAL NOT NULL, wkt TEXT NOT NULL,
@@ -98,7 +100,7 @@ class Database:
     """A results database being made."""
 
     path: Path
-    schema_version: str = "1"
+    schema_version: str = "2"
     _ids: dict[str, int] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -196,7 +198,17 @@ class Database:
     def times(self, cell: int, cpu_ns: Sequence[int]) -> None:
         """Adds repetitions."""
         for repetition, sample in enumerate(cpu_ns):
-            self._insert("timing_sample", cell, repetition, sample + 7, sample)
+            self._insert(
+                "timing_sample",
+                cell,
+                repetition,
+                self.run,
+                sample + 7,
+                sample,
+                12,
+                0,
+                10**7,
+            )
 
     def shape(self, model: int, layer: int, wkt: str = PLATE_WKT) -> None:
         """Keeps a layer's material."""

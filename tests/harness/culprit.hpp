@@ -71,6 +71,9 @@ class Culprit final : public Planner {
     kLoop,
     kHoard,
     kNan,
+    kInfinite,
+    kRecurse,
+    kLeak,
     kExit,
     kChatter,
     kCloseFiles,
@@ -92,6 +95,9 @@ class Culprit final : public Planner {
             {"loop", Crime::kLoop},
             {"hoard", Crime::kHoard},
             {"nan", Crime::kNan},
+            {"infinite", Crime::kInfinite},
+            {"recurse", Crime::kRecurse},
+            {"leak", Crime::kLeak},
             {"exit", Crime::kExit},
             {"chatter", Crime::kChatter},
             {"close_files", Crime::kCloseFiles},
@@ -128,6 +134,18 @@ class Culprit final : public Planner {
         break;
       case Crime::kNan:
         first.x = std::numeric_limits<double>::quiet_NaN();
+        break;
+      case Crime::kInfinite:
+        first.y = std::numeric_limits<double>::infinity();
+        break;
+      case Crime::kRecurse:
+        first.x += recurse(1);
+        break;
+      case Crime::kLeak:
+        // All that is asked for, and a scribble beside the part.
+        for (int i = 0; i < 20; ++i)
+          route.strokes.push_back(
+              {{{-9, -9.0 + i / 2.0}, {-3, -9.0 + i / 2.0}}, context.line_width_mm});
         break;
       case Crime::kExit:
         std::exit(0);
@@ -167,6 +185,13 @@ class Culprit final : public Planner {
   }
 
  private:
+  /// Until the stack is used up.
+  static double recurse(double depth) {
+    volatile double here[512] = {depth};
+    if (depth < 0) return 0;  // never, but a compiler must not know
+    return recurse(depth + 1) + here[0];
+  }
+
   static void hoard() {
     std::vector<std::string> all;
     for (;;) all.emplace_back(std::size_t{1} << 20, 'x');

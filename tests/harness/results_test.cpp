@@ -64,7 +64,7 @@ CellRecord cell_record(const Ids& ids, const std::string& key, Outcome outcome =
 }
 
 TimingSample sample(int repetition, std::int64_t ns) {
-  return {repetition, {ns, ns + 1}, {{ns - 10, ns - 9}, {10, 10}}};
+  return {repetition, {ns, ns + 1}, {{ns - 10, ns - 9}, {10, 10}}, 12, 3, 4096};
 }
 
 /// The first column of a query's first row; "NULL" for NULL.

@@ -72,13 +72,55 @@ TEST_F(RunCommand, CountsRanksAndSaysWhereTheResultsAre) {
   EXPECT_LT(done.out.find("  1  honest "), done.out.find("  2  one way ")) << done.out;
   EXPECT_TRUE(done.out.ends_with("\nresults: " + in_folder("out") + "/results.sqlite\n"))
       << done.out;
-  EXPECT_EQ(done.err.find('\r'), std::string::npos) << "no progress where there is no terminal";
+  EXPECT_EQ(done.err.find('\r'), std::string::npos) << "no bar where there is no terminal";
+  std::istringstream events(done.err);
+  std::size_t cells_told = 0;
+  for (std::string line; std::getline(events, line);) {
+    const nlohmann::json event = nlohmann::json::parse(line, nullptr, false);
+    ASSERT_TRUE(event.is_object()) << line;
+    if (event.value("what", "") == "cell") ++cells_told;
+  }
+  EXPECT_EQ(cells_told, 2u);
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "out"), fs::directory_iterator()), 1);
 
   const ProgramRun again = run(std::string(kHead) + kHonest);
   EXPECT_EQ(again.exit_code, 0);
   EXPECT_EQ(again.out, done.out);
   EXPECT_NE(again.err.find("2 of 2 cells are in the database already"), std::string::npos);
+}
+
+TEST_F(RunCommand, ProgressTakesTheFormThatIsAskedFor) {
+  const auto told = [&](const std::string& form) {
+    return run(std::string(kHead) + kHonest, {"--fresh", "--progress", form}).err;
+  };
+  EXPECT_EQ(told("none"), "");
+  EXPECT_NE(told("lines").find("] square.wkt · honest: valid\n"), std::string::npos);
+  EXPECT_NE(told("bar").find("cell 0 of 2\r\x1b[K"), std::string::npos);
+  EXPECT_TRUE(told("json").starts_with("{\"event\":"));
+  EXPECT_NE(told("loud").find("--progress"), std::string::npos);
+}
+
+TEST_F(RunCommand, EveryMisbehaviourOfAPluginCostsItsOwnCellsAndIsNamed) {
+  const std::vector<std::pair<std::string, std::string>> crimes {
+    {"segfault", "crashed"}, {"recurse", "crashed"}, {"abort", "crashed"}, {"exit", "crashed"},
+        {"throw", "failed"}, {"nan", "failed"}, {"infinite", "failed"}, {"loop", "timed_out"},
+        {"outside", "off_task"}, {"leak", "off_task"}, {"skip", "off_task"},
+#if !defined(__SANITIZE_ADDRESS__)
+        {"hoard", "out_of_memory"},
+#endif
+  };
+  std::string config = std::string(kHead) + "timeout_s = 10\nmemory_mb = 200\n" + kHonest;
+  for (const auto& [crime, outcome] : crimes) config += culprit(crime);
+  const ProgramRun done = run(config, {"--jobs", "2"});
+  EXPECT_EQ(done.exit_code, 1) << done.err;
+  for (const auto& [crime, outcome] : crimes)
+    EXPECT_NE(done.out.find("  square.wkt · " + crime + ": " + outcome + " ("), std::string::npos)
+        << crime << " is not " << outcome << " in\n"
+        << done.out;
+  EXPECT_NE(done.out.find("  1  honest "), std::string::npos) << done.out;
+  EXPECT_NE(done.out.find("  2  one way "), std::string::npos) << done.out;
+  EXPECT_TRUE(done.out.starts_with(std::to_string(crimes.size() + 2) + " cells: 2 valid, "))
+      << done.out;
 }
 
 TEST_F(RunCommand, CellsThatAreNotValidAreCountedNamedAndMakeTheExitCode) {
@@ -119,13 +161,19 @@ TEST_F(RunCommand, AnotherBuildOfAPluginIsExecutedAnew) {
   const ProgramRun again = run_it();
   EXPECT_EQ(again.exit_code, 0);
   EXPECT_NE(again.err.find("executing 2 cells"), std::string::npos) << again.err;
+  EXPECT_NE(again.err.find("{\"event\":\"redo\",\"cell\":\"square.wkt · honest\",\"why\":\"the "
+                           "plugin file of its planner has changed\"}\n"),
+            std::string::npos)
+      << again.err;
   EXPECT_TRUE(again.out.starts_with("2 cells: 2 valid\n")) << again.out;
 }
 
 TEST_F(RunCommand, ADryRunListsAndWritesNothing) {
   const ProgramRun dry = run(std::string(kHead) + kHonest, {"--dry-run"});
   EXPECT_EQ(dry.exit_code, 0) << dry.err;
-  EXPECT_NE(dry.err.find("would execute square.wkt · one way\n"), std::string::npos) << dry.err;
+  EXPECT_NE(dry.out.find("would execute square.wkt · one way\n"), std::string::npos) << dry.out;
+  EXPECT_NE(dry.out.find("\n2 cells to execute, 0 done, "), std::string::npos) << dry.out;
+  EXPECT_NE(dry.out.find("\nabout "), std::string::npos) << dry.out;
   EXPECT_FALSE(fs::exists(folder_ / "out"));
 }
 
@@ -135,7 +183,8 @@ TEST_F(RunCommand, WhatIsWrongIsSaidInOneLineBeforeAnythingIsWritten) {
                      "t.toml:16: key `fillx`: unknown key of [[contender]]; did you mean `fill`?");
   expect_run_refused("name = \n" + good, "t.toml:1:8: ");
   expect_run_refused("plugins = [\"none.so\"]\n" + good, "none.so");
-  expect_run_refused(good, "--only planner=hatch: must be contender=NAME or model=SPEC",
+  expect_run_refused(good,
+                     "--only planner=hatch: must be contender=NAME, model=SPEC or setting=LABEL",
                      {"--only", "planner=hatch"});
   expect_run_refused(good, "did you mean honest?", {"--only", "contender=honets"});
   expect_run_refused(good, "--jobs", {"--jobs", "-3"});

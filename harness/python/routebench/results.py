@@ -11,7 +11,7 @@ from urllib.parse import quote
 if TYPE_CHECKING:
     import pandas
 
-SCHEMA_VERSION = "1"
+SCHEMA_VERSION = "2"
 """Of the databases that this reads."""
 
 _CELLS = """

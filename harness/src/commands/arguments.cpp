@@ -1,5 +1,7 @@
 #include "arguments.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -115,6 +117,28 @@ void add_jobs_option(CLI::App& command, int& jobs, const std::string& remark) {
 void add_repair_flag(CLI::App& command, bool& repair) {
   command.add_flag("--repair", repair,
                    "Mend what would be refused, and mark the layers where that was needed");
+}
+
+void add_progress_option(CLI::App& command, std::string& form) {
+  form = "auto";
+  command
+      .add_option(
+          "--progress", form,
+          "auto, bar (one line with the time to go), lines (one a cell), json (one object a "
+          "line) or none; auto is bar on a terminal, else json")
+      ->check(CLI::IsMember({"auto", "bar", "lines", "json", "none"}))
+      ->type_name("FORM")
+      ->capture_default_str();
+}
+
+RunLog log_of(const std::string& form) {
+  const auto which = [&] {
+    if (form == "none") return ProgressForm::kNone;
+    if (form == "lines") return ProgressForm::kLines;
+    if (form == "bar" || (form == "auto" && isatty(STDERR_FILENO) == 1)) return ProgressForm::kBar;
+    return ProgressForm::kJson;
+  };
+  return {&std::cerr, which()};
 }
 
 Task task_of(const std::vector<std::string>& settings) {

@@ -11,6 +11,7 @@
 #include "routebench/harness/metrics.hpp"
 #include "routebench/harness/output.hpp"
 #include "routebench/harness/pipeline.hpp"
+#include "routebench/harness/run_log.hpp"
 #include "routebench/harness/task.hpp"
 #include "routebench/planning/registry.hpp"
 
@@ -30,6 +31,11 @@ void add_printer_option(CLI::App& command, std::vector<std::string>& settings);
 void add_plugin_option(CLI::App& command, std::vector<std::string>& files);
 void add_jobs_option(CLI::App& command, int& jobs, const std::string& remark = {});
 void add_repair_flag(CLI::App& command, bool& repair);
+
+/// How an experiment tells on the standard error how far it is.
+void add_progress_option(CLI::App& command, std::string& form);
+/// Takes what add_progress_option accepted: "auto" is a bar on a terminal and JSON elsewhere.
+[[nodiscard]] RunLog log_of(const std::string& form);
 
 /// The defaults with `key=value` settings applied in order.
 /// Throws Error for what set_task_value and check_task refuse, and for a text without '='.

@@ -1,8 +1,8 @@
-#include <unistd.h>
-
 #include <CLI/CLI.hpp>
+#include <charconv>
 #include <filesystem>
 #include <iostream>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -33,57 +33,78 @@ struct Arguments {
   bool repair = false;
   std::vector<std::string> plugins;
   std::vector<std::string> only;
+  std::string shard;
+  std::string progress;
 };
 
-/// Sorts "contender=NAME" and "model=SPEC" to where they belong.
+/// Sorts "contender=NAME", "model=SPEC" and "setting=LABEL" to where they belong.
 void read_only(const std::vector<std::string>& only, RunnerOptions& options) {
+  const std::map<std::string, std::vector<std::string>*> kinds{
+      {"contender", &options.only_contenders},
+      {"model", &options.only_models},
+      {"setting", &options.only_settings}};
   for (const std::string& choice : only) {
     const std::size_t equals = choice.find('=');
-    const std::string kind = choice.substr(0, equals);
-    if (equals == std::string::npos || (kind != "contender" && kind != "model"))
+    const auto kind = kinds.find(choice.substr(0, equals));
+    if (equals == std::string::npos || kind == kinds.end())
       throw Error(ErrorKind::kBadUsage,
-                  "--only " + choice + ": must be contender=NAME or model=SPEC");
-    (kind == "model" ? options.only_models : options.only_contenders)
-        .push_back(choice.substr(equals + 1));
+                  "--only " + choice + ": must be contender=NAME, model=SPEC or setting=LABEL");
+    kind->second->push_back(choice.substr(equals + 1));
   }
+}
+
+/// "2/3" as a shard.
+Shard read_shard(const std::string& text) {
+  const std::size_t slash = text.find('/');
+  Shard shard;
+  const auto read = [&](std::string_view digits, std::size_t& number) {
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+    return error == std::errc{} && end == digits.data() + digits.size();
+  };
+  if (slash == std::string::npos || !read(std::string_view(text).substr(0, slash), shard.number) ||
+      !read(std::string_view(text).substr(slash + 1), shard.count) || shard.number < 1 ||
+      shard.number > shard.count)
+    throw Error(ErrorKind::kBadUsage,
+                "--shard " + text + ": must be I/N with I from 1 to N, such as 2/8");
+  return shard;
+}
+
+/// The folder of results without --out. Shards have one each.
+std::filesystem::path default_folder(const ExperimentConfig& config,
+                                     const std::optional<Shard>& shard) {
+  std::string name = config.name;
+  if (shard)
+    name += "-shard-" + std::to_string(shard->number) + "-of-" + std::to_string(shard->count);
+  return std::filesystem::path("results") / name;
 }
 
 RunnerOptions options_of(const Arguments& arguments, const ExperimentConfig& config) {
   RunnerOptions options;
-  options.out = arguments.out.empty() ? std::filesystem::path("results") / config.name
+  if (!arguments.shard.empty()) options.shard = read_shard(arguments.shard);
+  options.out = arguments.out.empty() ? default_folder(config, options.shard)
                                       : std::filesystem::path(arguments.out);
   if (arguments.jobs >= 0) options.jobs = arguments.jobs;
   options.fresh = arguments.fresh;
-  options.dry_run = arguments.dry_run;
   options.repair = arguments.repair;
   options.command_line = command_line();
   read_only(arguments.only, options);
   return options;
 }
 
-PlannerSet planners_of(const ExperimentConfig& config, const Arguments& arguments) {
-  std::vector<std::string> files = config.plugins;
-  files.insert(files.end(), arguments.plugins.begin(), arguments.plugins.end());
-  PlannerSet planners = load_planners(files);
-  std::vector<ContenderSpec> contenders;
-  std::vector<std::string> names;
-  for (const ConfiguredContender& contender : config.contenders) {
-    contenders.push_back(contender.spec);
-    for (const std::optional<SlotSpec>& slot : {contender.spec.shell, contender.spec.fill})
-      if (slot) names.push_back(slot->planner);
-  }
-  add_commands(planners, names, std::filesystem::absolute(config.file).parent_path());
-  stand_in_for_refused(planners, contenders);
-  return planners;
-}
-
 int run(const Arguments& arguments) {
   const ExperimentConfig config = load_config(arguments.config);
-  const PlannerSet planners = planners_of(config, arguments);
+  std::vector<std::string> plugins = config.plugins;
+  plugins.insert(plugins.end(), arguments.plugins.begin(), arguments.plugins.end());
+  const PlannerSet planners = load_planners_for(config, plugins);
   print_refused(planners);
-  const RunLog log{&std::cerr, isatty(STDERR_FILENO) == 1};
-  const RunSummary summary = run_experiment(config, planners, options_of(arguments, config), log);
-  if (arguments.dry_run) return 0;
+  const RunnerOptions options = options_of(arguments, config);
+  const RunLog log = log_of(arguments.progress);
+  if (arguments.dry_run) {
+    const Foresight foresight = foresee_experiment(config, planners, options, log);
+    write_to_stdout([&](std::ostream& out) { write_foresight(out, foresight); });
+    return 0;
+  }
+  const RunSummary summary = run_experiment(config, planners, options, log);
   if (summary.interrupted) {
     std::cerr << "routebench: interrupted; " << summary.executed + summary.found
               << " cells are done and kept, " << summary.left
@@ -104,7 +125,9 @@ void add_run_command(CLI::App& app, int& exit_code) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App& command = *app.add_subcommand("run", "execute an experiment and rank its contenders");
   command.add_option("CONFIG", arguments->config, "the experiment, a TOML file")->required();
-  command.add_option("--out", arguments->out, "folder of the results [results/NAME]")
+  command
+      .add_option("--out", arguments->out,
+                  "folder of the results [results/NAME; of a shard results/NAME-shard-I-of-N]")
       ->type_name("DIR");
   command
       .add_option("--jobs,-j", arguments->jobs,
@@ -118,7 +141,14 @@ void add_run_command(CLI::App& app, int& exit_code) {
   command.add_flag("--repair", arguments->repair, "slice broken models, mark the layers concerned");
   add_plugin_option(command, arguments->plugins);
   add_repeated(command, "--only", arguments->only, "WHAT",
-               "execute only contender=NAME or model=SPEC");
+               "execute only contender=NAME, model=SPEC or setting=LABEL (or a part of a label: "
+               "setting=density=1)");
+  command
+      .add_option("--shard", arguments->shard,
+                  "execute every N-th cell, from the I-th on, into a database of its own; "
+                  "routebench merge joins them")
+      ->type_name("I/N");
+  add_progress_option(command, arguments->progress);
   command.footer(
       "Cells that the results hold already are not executed again, so the same command goes on\n"
       "after an interruption. Ctrl-C keeps what is done. Timing samples are taken one at a time,\n"

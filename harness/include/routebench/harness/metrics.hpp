@@ -36,6 +36,9 @@ struct MetricInfo {
 /// Place in the table. Throws Error{kBadUsage} with the nearest name.
 [[nodiscard]] std::size_t metric_index(std::string_view name);
 
+/// Whether equal routes always have equal values: false for times and memory, which are measured.
+[[nodiscard]] bool is_deterministic(std::string_view metric);
+
 /// One value a metric, in the table's order; nothing where it does not apply. Zero is a value.
 using Scores = std::vector<std::optional<double>>;
 

@@ -25,6 +25,8 @@
 
 namespace routebench {
 
+struct ExperimentConfig;
+
 /// A folder of the search path of plugins.
 struct PluginFolder {
   std::string path;
@@ -53,14 +55,18 @@ struct PlannerSet {
 void add_commands(PlannerSet& planners, std::span<const std::string> names,
                   const std::filesystem::path& folder = {});
 
+/// The planners of an experiment: load_planners, then the commands in its slots, which run in the
+/// config's folder. If plugins have been refused, a name that nobody knows stands for a planner
+/// that takes any parameters and fails with the refusal as its reason: what needs a bad plugin
+/// fails, and the rest goes on.
+///
+/// Takes  the config's plugin files and those given beside it.
+/// Throws Error{kBadInput} for a plugin that does not exist or a command that is no planner.
+[[nodiscard]] PlannerSet load_planners_for(const ExperimentConfig& config,
+                                           std::span<const std::string> plugin_files);
+
 /// Throws Error{kBadInput} naming the first plugin that was asked for and refused, and why.
 void require_all_loaded(const PlannerSet& planners);
-
-/// For contenders of an experiment: if plugins that were asked for have been refused, registers a
-/// planner for every name that nobody knows, which takes any parameters and fails with the refusal
-/// as its reason. So what needs a bad plugin fails, and the rest goes on. Throws Error{kBadInput}
-/// for a plugin that does not exist.
-void stand_in_for_refused(PlannerSet& planners, std::span<const ContenderSpec> contenders);
 
 struct SliceModelOptions {
   SliceMethod method = SliceMethod::kBucket;

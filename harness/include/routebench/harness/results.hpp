@@ -21,7 +21,9 @@
 
 namespace routebench {
 
-inline constexpr int kResultsSchemaVersion = 1;
+class Database;
+
+inline constexpr int kResultsSchemaVersion = 2;
 
 /// One execution of an experiment.
 struct RunRecord {
@@ -29,6 +31,10 @@ struct RunRecord {
   std::uint64_t seed = 1;
   std::string config_text;
   std::string config_resolved_json;
+  std::filesystem::path config_file;     ///< as given; its folder is where relative paths begin
+  std::filesystem::path working_folder;  ///< where relative paths of the command line begin
+  bool repair = false;                   ///< broken models were sliced, too
+  std::string shard;                     ///< "2/3" if this was the second of three; else empty
   std::string command_line;
   Provenance provenance;
   std::string plugins_json;
@@ -64,11 +70,14 @@ struct RouteRecord {
   std::string strokes_json;
 };
 
-/// One timed execution of a cell's planning.
+/// One timed execution of a cell's planning, in a process of its own.
 struct TimingSample {
   int repetition = 0;
-  PlanTime cell;                 ///< sum over the layers
-  std::vector<PlanTime> layers;  ///< lowest first
+  PlanTime cell;                    ///< sum over the layers
+  std::vector<PlanTime> layers;     ///< lowest first
+  std::int64_t minor_faults = 0;    ///< page faults while planning that needed no disk
+  std::int64_t major_faults = 0;    ///< page faults while planning that waited for the disk
+  std::int64_t peak_rss_bytes = 0;  ///< largest resident memory up to the end of planning
 };
 
 /// What came of a cell.
@@ -78,6 +87,7 @@ struct CellRecord {
   std::int64_t contender_id = 0;
   std::int64_t setting_id = 0;
   std::uint64_t seed = 1;
+  std::string plugin_hashes;  ///< of the files that its planners come from, if not compiled in
   Outcome outcome = Outcome::kValid;
   std::string reason;
   std::size_t layers = 0;
@@ -93,12 +103,18 @@ struct CellRecord {
 /// What is known of a cell that was executed before.
 struct KnownCell {
   std::int64_t cell_id = 0;
+  std::shared_ptr<const ModelRecord> model;  ///< without reports and warnings
+  std::shared_ptr<const ContenderRecord> contender;
+  std::shared_ptr<const SettingRecord> setting;
+  std::uint64_t seed = 1;
+  std::string plugin_hashes;
   Outcome outcome = Outcome::kValid;
   std::optional<std::string> route_hash;
   std::vector<int> repetitions;  ///< numbers of its timing samples, ascending
   bool current = false;          ///< belongs to the last run's config
   double cell_wall_s = 0;
-  double timeout_s = 0;  ///< the limits under which it was executed
+  std::optional<double> plan_wall_s;  ///< median of its timing samples
+  double timeout_s = 0;               ///< the limits under which it was executed
   int memory_mb = 0;
   std::string program_build_id;  ///< of the program that executed it
 };
@@ -160,6 +176,9 @@ class ResultsWriter {
   /// A repetition went wrong: the cell is no longer what it was.
   void change_outcome(std::int64_t cell_id, Outcome outcome, const std::string& reason);
 
+  /// The open file, for what is done to whole tables.
+  [[nodiscard]] Database& database() noexcept;
+
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;
@@ -180,6 +199,9 @@ struct StoredCell {
   std::string reason;
   std::size_t layers = 0;
   Scores totals;  ///< one a metric
+  std::string layers_hash;
+  std::string plugin_hashes;
+  std::optional<std::string> route_hash;
 };
 
 /// The file of results that a user means: the file itself or the folder that holds it.
@@ -190,6 +212,45 @@ struct StoredCell {
 /// by setting, model by model.
 /// Throws Error{kBadInput} for a file that is no results database of this version.
 [[nodiscard]] std::vector<StoredCell> current_cells(const std::filesystem::path& file);
+
+/// What a database says of its last run.
+struct LastRun {
+  RunRecord record;
+  bool finished = false;
+};
+/// Throws Error{kBadInput} for a file that is no results database of this version or has no run.
+[[nodiscard]] LastRun last_run(const std::filesystem::path& file);
+
+/// Writes the current cells as the SQLite schema of OMPL's benchmarks (tables experiments,
+/// plannerConfigs, enums, runs, progress), which Planner Arena and scripts for it read. A row of
+/// runs is a timing sample of a cell, or the cell itself if it has none. Returns the file.
+/// Throws Error{kBadInput} if the file cannot be written.
+std::filesystem::path export_ompl(const std::filesystem::path& file,
+                                  const std::filesystem::path& folder);
+
+/// What merge_results made.
+struct MergeSummary {
+  std::filesystem::path file;
+  std::size_t cells = 0;             ///< of the parts' last runs
+  std::vector<std::string> remarks;  ///< what people should know: runs that are not finished,
+                                     ///< shards that are missing
+};
+
+/// Joins databases of one experiment, such as its shards, into a new one: all runs, cells, scores,
+/// routes, layer shapes and timing samples of all of them. Its current cells are those of every
+/// part's last run.
+///
+/// A cell that several parts hold is stored once, with the timing samples of all; one that ran into
+/// a limit in one part and not in another is taken from the other.
+///
+/// Takes  the folder of the new database; folders of results or databases; whether an old database
+///        in that folder may be replaced; the command line for the record.
+/// Throws Error{kBadInput}, and leaves everything as it was: parts of different experiments,
+///        configs or schemas, a database that stands in the way, and cells that have the same key
+///        but differ in outcome, route or scores, which are named.
+MergeSummary merge_results(const std::filesystem::path& out,
+                           const std::vector<std::filesystem::path>& parts, bool replace,
+                           const std::string& command_line);
 
 /// Writes the database as CSV files (RFC 4180, UTF-8, a header line each), every file under a
 /// temporary name first. Returns the files. See results/README.md for their columns.

@@ -1,0 +1,103 @@
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+
+#include "arguments.hpp"
+#include "routebench/geometry/error.hpp"
+#include "routebench/harness/commands.hpp"
+#include "routebench/harness/output.hpp"
+#include "routebench/harness/provenance.hpp"
+#include "routebench/harness/reproduction.hpp"
+
+namespace routebench {
+namespace {
+
+constexpr int kExitDiffers = 1;
+constexpr int kExitInterrupted = 130;
+
+struct Arguments {
+  std::string results;
+  std::string out;
+  std::string base;
+  int jobs = -1;
+  bool fresh = false;
+  std::vector<std::string> plugins;
+  std::string progress;
+};
+
+/// An interrupted reproduction goes on; one that is done is not taken for a new one.
+void require_unfinished(const std::filesystem::path& out, bool fresh) {
+  std::error_code error;
+  const std::filesystem::path file = out / "results.sqlite";
+  if (fresh || !std::filesystem::exists(file, error) || !last_run(file).finished) return;
+  throw Error(ErrorKind::kBadUsage,
+              file.string() +
+                  ": is a finished reproduction; --fresh makes it anew, --out DIR puts "
+                  "another one elsewhere");
+}
+
+int reproduce(const Arguments& arguments) {
+  const std::filesystem::path original = results_file(arguments.results);
+  std::optional<std::filesystem::path> base;
+  if (!arguments.base.empty()) base = arguments.base;
+  const Reproduction again = read_reproduction(original, base);
+  const PlannerSet planners = load_planners_for(
+      again.config, arguments.plugins.empty() ? again.plugins : arguments.plugins);
+
+  RunnerOptions options;
+  options.out = arguments.out.empty() ? original.parent_path() / "reproduction"
+                                      : std::filesystem::path(arguments.out);
+  if (arguments.jobs >= 0) options.jobs = arguments.jobs;
+  options.fresh = arguments.fresh;
+  options.repair = again.repair;
+  options.only_cells = again.cells;
+  options.command_line = command_line();
+  require_unfinished(options.out, options.fresh);
+  const RunSummary summary =
+      run_experiment(again.config, planners, options, log_of(arguments.progress));
+  if (summary.interrupted) {
+    std::cerr << "routebench: interrupted; the same command goes on\n";
+    return kExitInterrupted;
+  }
+  const Comparison comparison = compare_results(original, summary.file);
+  write_to_stdout([&](std::ostream& out) {
+    write_comparison(out, comparison);
+    out << "results: " << summary.file.string() << '\n';
+  });
+  return comparison.differences.empty() ? 0 : kExitDiffers;
+}
+
+}  // namespace
+
+void add_reproduce_command(CLI::App& app, int& exit_code) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App& command = *app.add_subcommand(
+      "reproduce", "execute an experiment again from its results and say what differs");
+  command.add_option("RESULTS", arguments->results, "a folder of results, or the database in it")
+      ->required();
+  command.add_option("--out", arguments->out, "folder of the new results [RESULTS/reproduction]")
+      ->type_name("DIR");
+  command
+      .add_option("--base", arguments->base,
+                  "where the config's relative paths begin [where they did]")
+      ->type_name("DIR");
+  command
+      .add_option("--jobs,-j", arguments->jobs,
+                  "cells at a time; 0: one a core [as the config says]")
+      ->check(CLI::Range(0, 1024))
+      ->type_name("N");
+  command.add_flag("--fresh", arguments->fresh, "replace an earlier reproduction");
+  add_repeated(command, "--plugin", arguments->plugins, "FILE",
+               "plugins to load instead of the files that were loaded then");
+  add_progress_option(command, arguments->progress);
+  command.footer(
+      "The config is the one that the database holds, and so are the cells. Outcomes, routes and\n"
+      "all metrics but times and memory must be equal to the bit; what differs is named. What was\n"
+      "different about program and machine is told beside it.\n"
+      "Exit codes: 0 reproduced, 1 something differs, 2 bad usage or input, 3 internal error,\n"
+      "130 interrupted.");
+  command.callback([arguments, &exit_code] { exit_code = reproduce(*arguments); });
+}
+
+}  // namespace routebench
