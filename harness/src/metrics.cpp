@@ -67,7 +67,12 @@ constexpr std::array kMetrics{
     MetricInfo{"plan_cpu_ns", "Planning CPU time", "ns", kLower, kSum,
                "time inside the planners' plan(), of the processor"},
     MetricInfo{"peak_rss_bytes", "Peak memory", "bytes", kLower, kCell,
-               "largest resident memory of the process that planned"},
+               "largest resident memory of the process that planned, or of the foreign slicer"},
+    MetricInfo{"job_wall_s", "Whole job", "s", kLower, kCell,
+               "time of a foreign slicer from its start to its end, by the clock on the wall: "
+               "model read, sliced, planned, G-code written"},
+    MetricInfo{"job_cpu_s", "Whole job, CPU time", "s", kLower, kCell,
+               "time of a foreign slicer from its start to its end, of the processors"},
 };
 
 }  // namespace
