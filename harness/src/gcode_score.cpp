@@ -167,6 +167,7 @@ PlacedPrint place_print(const GcodePrint& print, const PreparedModel& model,
   placed.offset_mm =
       offset_mm ? *offset_mm : offset_to_model(layers, print.layers, placed.pairs, line_width_mm);
   placed.unpaired = unpaired_text(print, placed.pairs);
+  placed.stated_time_s = print.stated_time_s;
   placed.layers.resize(chosen.size());
   parallel_for(chosen.size(), [&](std::size_t i) {
     const std::optional<std::size_t> pair = placed.pairs.file_layers[chosen[i]];
@@ -184,6 +185,7 @@ JudgedCell judge_print(const Judge& judge, const PreparedModel& model,
                        const ParallelFor& parallel_for) {
   JudgedCell cell = judge_layers(judge, model, chosen, placed.layers, parallel_for);
   forget(cell, kPlanMetrics);
+  cell.totals.at(metric_index("stated_time_s")) = placed.stated_time_s;
   if (!placed.pairs.unpaired.empty()) {
     cell.verdict.outcome = Outcome::kOffTask;
     std::string& reason = cell.verdict.reason;
@@ -219,6 +221,7 @@ GcodeScore score_gcode(const Judge& judge, const GcodePrint& print,
   bare.demands.resize(printed.size());
   GcodeScore score;
   score.cell = judge_layers(judge, bare, all_layers(bare.sliced), printed, parallel_for);
+  score.cell.totals.at(metric_index("stated_time_s")) = print.stated_time_s;
   forget(score.cell, kPlanMetrics);
   forget(score.cell, kOutlineMetrics);
   if (judge.printer().retract_policy == RetractPolicy::kLengthAndCrossing)

@@ -62,6 +62,9 @@ constexpr std::array kMetrics{
     MetricInfo{"print_retract_s", "Retracting time", "s", kLower, kSum,
                "of the print time, while the filament is pulled back, the nozzle lifted, and both "
                "undone"},
+    MetricInfo{"stated_time_s", "Print time by the slicer", "s", kNeither, kCell,
+               "what a foreign slicer itself says of the print time, by its own model of the "
+               "printer"},
     MetricInfo{"plan_wall_ns", "Planning time", "ns", kLower, kSum,
                "time inside the planners' plan(), by the clock on the wall"},
     MetricInfo{"plan_cpu_ns", "Planning CPU time", "ns", kLower, kSum,

@@ -44,7 +44,8 @@ struct LayerPairs {
 struct PlacedPrint {
   std::vector<PlannedLayer> layers;  ///< one for each chosen layer; without times
   LayerPairs pairs;
-  Point2 offset_mm;  ///< that was added
+  Point2 offset_mm;                     ///< that was added
+  std::optional<double> stated_time_s;  ///< see GcodePrint
   /// What could not be paired, in one line; empty if nothing.
   std::string unpaired;
 };
