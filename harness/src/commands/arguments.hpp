@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,10 @@ void add_printer_option(CLI::App& command, std::vector<std::string>& settings);
 void add_plugin_option(CLI::App& command, std::vector<std::string>& files);
 void add_jobs_option(CLI::App& command, int& jobs, const std::string& remark = {});
 void add_repair_flag(CLI::App& command, bool& repair);
+void add_offset_option(CLI::App& command, std::string& offset);
+
+/// "12.5,-3" as a point on the grid; nothing of an empty text. Throws Error{kBadUsage} for another.
+[[nodiscard]] std::optional<Point2> offset_of(const std::string& text);
 
 /// The defaults with `key=value` settings applied in order.
 /// Throws Error for what set_task_value and check_task refuse, and for a text without '='.

@@ -1,19 +1,15 @@
 #include <CLI/CLI.hpp>
-#include <array>
-#include <charconv>
 #include <cmath>
 #include <iostream>
 #include <memory>
 #include <optional>
 #include <string>
-#include <system_error>
 #include <vector>
 
 #include "arguments.hpp"
 #include "json_documents.hpp"
 #include "layer_selection.hpp"
 #include "routebench/geometry/error.hpp"
-#include "routebench/geometry/grid.hpp"
 #include "routebench/harness/commands.hpp"
 #include "routebench/harness/gcode_reader.hpp"
 #include "routebench/harness/gcode_score.hpp"
@@ -37,24 +33,6 @@ struct ScoreArguments {
   bool repair = false;
 };
 
-/// "12.5,-3" as a point on the grid.
-Point2 offset_of(const std::string& text) {
-  std::array<double, 2> numbers{};
-  const char* at = text.data();
-  const char* const end = text.data() + text.size();
-  for (std::size_t i = 0; i < numbers.size(); ++i) {
-    const auto [stop, failure] = std::from_chars(at, end, numbers[i]);
-    constexpr double kFurthestMm = 1e6;
-    const bool last = i + 1 == numbers.size();
-    if (failure != std::errc{} || !(std::abs(numbers[i]) <= kFurthestMm) ||
-        (last ? stop != end : stop == end || *stop != ','))
-      throw Error(ErrorKind::kBadUsage,
-                  "--offset: '" + text + "' is no place; write x,y in mm, such as 10,-2.5");
-    at = stop + 1;
-  }
-  return snap(Point2{numbers[0], numbers[1]});
-}
-
 /// One call of `routebench score`, from its arguments to its outputs.
 class ScoreFile {
  public:
@@ -73,8 +51,7 @@ class ScoreFile {
 
   /// Returns the exit code.
   int run() {
-    const std::optional<Point2> offset =
-        arguments_.offset.empty() ? std::nullopt : std::optional(offset_of(arguments_.offset));
+    const std::optional<Point2> offset = offset_of(arguments_.offset);
     print_ = read_gcode_file(arguments_.file, {.layer_height_mm = judge_.task().layer_height_mm,
                                                .filament_mm = judge_.printer().filament_mm});
     if (arguments_.model.empty()) {
@@ -174,10 +151,7 @@ void add_score_command(CLI::App& app, int& exit_code) {
                   "What the file should print, as for plan; without it only what needs no model is "
                   "measured")
       ->type_name("MODEL");
-  command
-      .add_option("--offset", arguments->offset,
-                  "What to add to the file's places, in mm; else bounding boxes are aligned")
-      ->type_name("X,Y");
+  add_offset_option(command, arguments->offset);
   add_task_option(command, arguments->task);
   add_printer_option(command, arguments->printer);
   command

@@ -4,11 +4,16 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <numbers>
 
 #include "routebench/geometry/vec.hpp"
 
 namespace routebench::judging {
 namespace {
+
+/// A move shorter than this after a turn slighter than this (45 degrees) is a piece of a curve.
+constexpr double kShortMoveMm = 1;
+constexpr double kSlightTurnCos = std::numbers::sqrt2 / 2;
 
 /// A move as the look-ahead sees it. Speeds are squared: (mm/s)^2.
 struct Leg {
@@ -25,7 +30,10 @@ double junction2(Point2 before, Point2 after, const Printer& printer) {
   const double cos_turn = std::clamp(dot(before, after) / lengths, -1.0, 1.0);
   const double sin_half = std::sqrt((1 + cos_turn) / 2);
   if (sin_half >= 1) return std::numeric_limits<double>::infinity();
-  return printer.accel_mm_s2 * printer.junction_mm * sin_half / (1 - sin_half);
+  const double corner2 = printer.accel_mm_s2 * printer.junction_mm * sin_half / (1 - sin_half);
+  const double after_mm = std::sqrt(dot(after, after));
+  if (after_mm >= kShortMoveMm || cos_turn <= kSlightTurnCos) return corner2;
+  return std::min(corner2, printer.accel_mm_s2 * after_mm / std::acos(cos_turn));
 }
 
 /// Time from one speed to another over a leg.

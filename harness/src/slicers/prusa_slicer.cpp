@@ -1,6 +1,7 @@
 /// PrusaSlicer 2.5.
 
 #include <cmath>
+#include <numbers>
 
 #include "slicers/slic3r_family.hpp"
 
@@ -21,9 +22,13 @@ Settings prusa_slicer_settings(const Task& task, const Printer& printer) {
   set_all({"max_layer_height"}, number(task.layer_height_mm));
   set_all({"max_print_height"}, "1200");
 
-  // For the program's own estimate of the print time. It knows Marlin's classic jerk alone; the
-  // jerk that lets a right-angled corner pass as the junction deviation does is Marlin's own rule.
-  constexpr double kDeviationOfJerk = 0.4;
+  // For the program's own estimate of the print time. It knows Marlin's classic jerk alone, a bound
+  // on the change of speed of each axis. With junction deviation a right angle is taken at v^2 =
+  // (1 + sqrt 2) a d. The jerk for that is v if the sides lie along the axes and 4/pi v on the mean
+  // of all directions; what lies between the two serves corners and curves alike.
+  const double corner_mm_s =
+      std::sqrt((1 + std::numbers::sqrt2) * printer.accel_mm_s2 * printer.junction_mm);
+  constexpr double kJerkOfCorner = (1 + 4 / std::numbers::pi) / 2;
   constexpr const char* kUnlimited = "100000";
   set_all({"machine_limits_usage"}, "time_estimate_only");
   set_all({"machine_max_acceleration_x", "machine_max_acceleration_y", "machine_max_acceleration_z",
@@ -34,7 +39,7 @@ Settings prusa_slicer_settings(const Task& task, const Printer& printer) {
            "machine_max_feedrate_e", "machine_max_jerk_e"},
           kUnlimited);
   set_all({"machine_max_jerk_x", "machine_max_jerk_y", "machine_max_jerk_z"},
-          number(std::sqrt(printer.junction_mm * printer.accel_mm_s2 / kDeviationOfJerk)));
+          number(kJerkOfCorner * corner_mm_s));
   return settings;
 }
 
