@@ -102,11 +102,13 @@ TEST_P(PrusaSlicersEstimate, IsMetWithinOneInTwenty) {
   const ScratchDir dir;
   Task task;
   task.skin_layers = 2;
+  Printer printer;
+  printer.jerk_mm_s = 8;  // the one rule of corners that both know
   const std::string model = "shape:" + std::string(GetParam()) + "?size=20";
-  ASSERT_EQ(test::slice_abroad(*kind, model, task, Printer{}, dir.path()), 0)
+  ASSERT_EQ(test::slice_abroad(*kind, model, task, printer, dir.path()), 0)
       << test::text_of_file(dir.path() / "log");
   const GcodePrint print = read_gcode_file(dir.path() / "model.gcode", {});
-  const Scores totals = score_gcode(Judge(task, Printer{}), print, serial_for).cell.totals;
+  const Scores totals = score_gcode(Judge(task, printer), print, serial_for).cell.totals;
   ASSERT_TRUE(print.stated_time_s);
   EXPECT_GT(*print.stated_time_s, 60) << "too short to say much";
   EXPECT_NEAR(totals[metric_index("print_time_s")].value(), *print.stated_time_s,

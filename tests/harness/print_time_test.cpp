@@ -92,6 +92,44 @@ TEST(PrintTime, ACurveOfShortMovesIsRunThroughAsItsArc) {
   EXPECT_LT(extrude_s(points), wanted);
 }
 
+/// From one speed to another and further, at 1000 mm/s2 and up to 100 mm/s.
+double leg_s(double length_mm, double from, double to) {
+  const double ramps_mm = (2 * 100.0 * 100 - from * from - to * to) / 2000;
+  return (2 * 100 - from - to) / 1000 + (length_mm - ramps_mm) / 100;
+}
+
+TEST(PrintTime, ByJerkCornersAndEndsHaveASpeedAtOnce) {
+  Printer printer = round_printer();
+  printer.jerk_mm_s = 10;
+  EXPECT_NEAR(extrude_s({{0, 0}, {100, 0}}, printer), leg_s(100, 10, 10), 1e-12);
+  // A reversal and a right angle along the axes: the axis that stops changes by all it has.
+  const double stop = 2 * leg_s(100, 10, 10);
+  EXPECT_NEAR(extrude_s({{0, 0}, {100, 0}, {0, 0}}, printer), stop, 1e-12);
+  EXPECT_NEAR(extrude_s({{0, 0}, {100, 0}, {100, 100}}, printer), stop, 1e-12);
+  // The same angle with its sides across: both axes have v / sqrt 2, one keeps it, one reverses.
+  const double d = 100 / std::sqrt(2.0);
+  const double across = 10 * std::sqrt(2.0);
+  EXPECT_NEAR(extrude_s({{0, 0}, {d, d}, {2 * d, 0}}, printer), 2 * leg_s(100, 10, across), 1e-9);
+  // By a 3-4-5 angle from the axis: x falls from v to 0.8 v, y rises from 0 to 0.6 v.
+  const double slight = 10 / 0.6;
+  EXPECT_NEAR(extrude_s({{0, 0}, {100, 0}, {180, 60}}, printer), 2 * leg_s(100, 10, slight), 1e-9);
+  // Straight on there is no corner; a jerk beyond the speed leaves nothing to wait for.
+  EXPECT_NEAR(extrude_s({{0, 0}, {40, 0}, {100, 0}}, printer), leg_s(100, 10, 10), 1e-12);
+  printer.jerk_mm_s = 1000;
+  EXPECT_NEAR(extrude_s({{0, 0}, {100, 0}, {100, 100}}, printer), 2.0, 1e-12);
+}
+
+TEST(PrintTime, ByJerkARetractionStopsTheNozzleAtThatSpeed) {
+  Printer printer = round_printer();
+  printer.jerk_mm_s = 10;
+  std::vector<Move> moves = extruding({{0, 0}, {100, 0}});
+  moves.push_back({{100, 0}, {200, 0}, false, true});
+  const PrintTime time = print_time(moves, printer);
+  EXPECT_NEAR(time.extrude_s, leg_s(100, 10, 10), 1e-12);
+  EXPECT_NEAR(time.travel_s, 2 * 190.0 / 1000 + (100 - 2 * (40000 - 100) / 2000.0) / 200, 1e-12);
+  EXPECT_NEAR(time.retract_s, 2 * 0.8 / 40, 1e-12);
+}
+
 TEST(PrintTime, WhatComesLaterIsSeenInTime) {
   // A move of 0.1 mm before a reversal: the long one before it must already be slow enough to stop.
   const double v2 = 2 * 1000 * 0.1;  // at the joint, straight on: stops within 0.1 mm

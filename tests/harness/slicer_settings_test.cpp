@@ -98,6 +98,9 @@ TEST(SlicerSettings, ARightAngleIsTakenAboutAsFastByJerkAsByJunctionDeviation) {
   const double half = std::sqrt(0.5);
   const double corner = std::sqrt(printer.accel_mm_s2 * printer.junction_mm * half / (1 - half));
   EXPECT_GT(jerk, corner) << "the change of each axis where the sides lie along the axes";
+  Printer jerky;
+  jerky.jerk_mm_s = 8;
+  EXPECT_EQ(map_of(prusa_slicer_settings(Task{}, jerky)).at("machine_max_jerk_y"), "8");
   EXPECT_LT(jerk, 4 / std::numbers::pi * corner) << "on the mean of all directions";
 }
 

@@ -34,6 +34,9 @@ struct PrintTime {
 /// - Curves. A move shorter than 1 mm after a turn by u < 45 degrees is taken for a piece of an arc
 ///   of the radius L/u, which the acceleration lets be run through with no more than
 ///       v_j^2 = a L / u.
+/// - Jerk, if the printer has one, in the place of both (Marlin's classic rule): from rest and to
+///   rest a move may have the speed j at once; where two moves meet, no axis may change its speed by
+///   more than j, an axis that reverses being counted by the larger part alone.
 /// - Look-ahead. A move of length L that begins with speed v0 can end with no more than v1 with
 ///   v1^2 = v0^2 + 2 a L; what the moves after one allow is carried backwards by the same law, then
 ///   what those before it allow forwards.

@@ -23,9 +23,10 @@ Settings prusa_slicer_settings(const Task& task, const Printer& printer) {
   set_all({"max_print_height"}, "1200");
 
   // For the program's own estimate of the print time. It knows Marlin's classic jerk alone, a bound
-  // on the change of speed of each axis. With junction deviation a right angle is taken at v^2 =
-  // (1 + sqrt 2) a d. The jerk for that is v if the sides lie along the axes and 4/pi v on the mean
-  // of all directions; what lies between the two serves corners and curves alike.
+  // on the change of speed of each axis. A printer without one gets what is most like it. With
+  // junction deviation a right angle is taken at v^2 = (1 + sqrt 2) a d. The jerk for that is v if
+  // the sides lie along the axes and 4/pi v on the mean of all directions; what lies between the
+  // two serves corners and curves alike.
   const double corner_mm_s =
       std::sqrt((1 + std::numbers::sqrt2) * printer.accel_mm_s2 * printer.junction_mm);
   constexpr double kJerkOfCorner = (1 + 4 / std::numbers::pi) / 2;
@@ -39,7 +40,7 @@ Settings prusa_slicer_settings(const Task& task, const Printer& printer) {
            "machine_max_feedrate_e", "machine_max_jerk_e"},
           kUnlimited);
   set_all({"machine_max_jerk_x", "machine_max_jerk_y", "machine_max_jerk_z"},
-          number(kJerkOfCorner * corner_mm_s));
+          number(printer.jerk_mm_s > 0 ? printer.jerk_mm_s : kJerkOfCorner * corner_mm_s));
   return settings;
 }
 

@@ -109,8 +109,12 @@ void require_success(const ProcessEnd& end, const fs::path& program, const std::
                      int memory_mb) {
   if (end.signal == 0 && end.exit_code == 0) return;
   const double limit_bytes = static_cast<double>(memory_mb) * (1 << 20);
+  // How programs of C++, Python, Perl and the C library call it.
+  constexpr std::array kComplaints{"bad_alloc", "MemoryError", "Out of memory",
+                                   "Cannot allocate memory"};
   if (end.peak_rss_bytes > kAtMemoryLimit * limit_bytes ||
-      log.find("bad_alloc") != std::string::npos)
+      std::any_of(kComplaints.begin(), kComplaints.end(),
+                  [&](const char* complaint) { return log.find(complaint) != log.npos; }))
     throw std::bad_alloc();
   const std::string words = last_words(log);
   throw Error(ErrorKind::kBadInput,
