@@ -31,7 +31,7 @@ for name in "${names[@]}"; do
     cat "results/$name/plots/summary.md"
     if [ "$name" = slicers ]; then
       printf '\n## Totals\n\nEvery cell, by travel: what stands above a contender is better on that model.\n\n'
-      cat "results/$name/plots/table.md"
+      sed -e 1d -e 's/^##/###/' "results/$name/plots/table.md"
     fi
     printf '\n## Figures\n'
     for figure in "$page"/*.png; do
