@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Installs every Debian 12 package that routebench is built from, run with and tested with. Does
-# nothing, at once, where all are there. Needs root or sudo only if one is missing.
+# install_packages.sh [PACKAGE...]: installs these Debian 12 packages; without any, all that
+# routebench is built from, run with and tested with. Does nothing, at once, where all are there.
+# Needs root or sudo only if one is missing.
 set -euo pipefail
 
 packages=(
@@ -20,6 +21,7 @@ packages=(
   # the meshes behind cgal: models
   libcgal-demo
 )
+[ $# -eq 0 ] || packages=("$@")
 
 missing=()
 for package in "${packages[@]}"; do

@@ -6,13 +6,17 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 
 names=("$@")
-[ ${#names[@]} -gt 0 ] || names=(planners published scaling)
+[ ${#names[@]} -gt 0 ] || names=(planners published scaling slicers)
 experiments/build.sh release routebench_program
 program=build/release/bin/routebench
+slicer_metrics=travel_mm,retractions,strokes,print_time_s,stated_time_s,job_cpu_s
 
 for name in "${names[@]}"; do
   "$program" run "experiments/$name.toml" --out "results/$name" || [ $? -eq 1 ]
-  "$program" plot "results/$name" --formats png --metrics travel_mm >/dev/null
+  options=(--formats png --metrics travel_mm)
+  # What slicers do is what ours are measured by.
+  [ "$name" != slicers ] || options=(--formats png --metrics "$slicer_metrics" --baseline PrusaSlicer)
+  "$program" plot "results/$name" "${options[@]}" >/dev/null
   "$program" export "results/$name" >/dev/null
 
   page=results/reference/$name
@@ -25,6 +29,10 @@ for name in "${names[@]}"; do
   grep -v ',peak_rss_bytes,' "results/$name/csv/cells.csv" | gzip -9n >"$page/cells.csv.gz"
   {
     cat "results/$name/plots/summary.md"
+    if [ "$name" = slicers ]; then
+      printf '\n## Totals\n\nEvery cell, by travel: what stands above a contender is better on that model.\n\n'
+      sed -e 1d -e 's/^##/###/' "results/$name/plots/table.md"
+    fi
     printf '\n## Figures\n'
     for figure in "$page"/*.png; do
       printf '\n![%s](%s)\n' "$(basename "$figure" .png)" "$(basename "$figure")"

@@ -36,10 +36,10 @@ Json layer_document(const Layer& layer) {
 
 Json plan_document(const PlanResult& result) {
   return {{"model", result.model.spec},
-          {"contender", json_of(result.contender)},
+          {"contender", result.contender},
           {"task", json_of(result.judge.task())},
           {"printer", json_of(result.judge.printer())},
-          {"seed", result.seed},
+          {"seed", result.seed ? Json(*result.seed) : Json(nullptr)},
           {"outcome", to_string(result.cell.verdict.outcome)},
           {"reason", result.cell.verdict.reason},
           {"layers", result.layers},

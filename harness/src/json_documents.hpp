@@ -17,11 +17,11 @@ namespace routebench {
 
 /// What `plan` has done, for its document.
 struct PlanResult {
-  const Contender& contender;
+  Json contender;
   const SlicedModel& model;
   const Judge& judge;
-  std::uint64_t seed;
-  std::size_t layers;  ///< that were to be planned
+  std::optional<std::uint64_t> seed;  ///< nothing if nobody has drawn lots
+  std::size_t layers;                 ///< that were to be planned
   const JudgedCell& cell;
 };
 [[nodiscard]] Json plan_document(const PlanResult& result);

@@ -89,10 +89,10 @@ Reproduction read_reproduction(const fs::path& file, const std::optional<fs::pat
   again.config = parse_config(run.config_text, base ? *base / config_file.filename() : config_file);
   again.repair = run.repair;
   for (const Json& plugin : Json::parse(run.plugins_json)) {
-    const auto file = plugin.at("file").get<std::string>();
+    const auto name = plugin.at("file").get<std::string>();
     // Commands stand in the config; what a search path brings is there again or is not wanted.
-    if (is_command(file) || !plugin.at("by_name").get<bool>()) continue;
-    again.plugins.push_back((run.working_folder / file).string());
+    if (is_command(name) || !plugin.at("by_name").get<bool>()) continue;
+    again.plugins.push_back((run.working_folder / name).string());
   }
   for (const StoredCell& cell : current_cells(file)) again.cells.insert(name_of(cell));
   if (again.cells.empty())

@@ -18,7 +18,8 @@ struct CsvFile {
 
 /// What tells a cell from the others, as the first columns of every table about cells.
 constexpr const char* kCellColumns =
-    "run.experiment AS experiment, spec AS model, contender.name AS contender, setting.label AS setting, "
+    "run.experiment AS experiment, spec AS model, contender.name AS contender, setting.label AS "
+    "setting, "
     "current_cell.seed AS seed, outcome";
 constexpr const char* kCellTables =
     " FROM current_cell JOIN run USING(run_id) JOIN model USING(model_id)"

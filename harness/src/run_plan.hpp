@@ -4,6 +4,7 @@
 #include <deque>
 #include <memory>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "routebench/harness/config.hpp"
@@ -21,9 +22,10 @@ struct ReadyModel {
   double work = 0;  ///< how much there is to plan and to judge; see work_of
 };
 
+/// Planners or a foreign slicer.
 struct ReadyContender {
   ContenderRecord record;
-  Contender contender;
+  std::variant<Contender, Slicer> worker;
   std::string plugin_hashes;  ///< of the plugins that its planners come from
 };
 

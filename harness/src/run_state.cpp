@@ -13,6 +13,10 @@ bool may_go_further(const KnownCell& known, const RunOptions& run) {
 
 }  // namespace
 
+bool is_foreign(const PlannedCell& cell) {
+  return std::holds_alternative<Slicer>(cell.contender->worker);
+}
+
 std::vector<CellState> states_of(const RunPlan& plan, const KnownCells& known,
                                  const RunOptions& run) {
   std::vector<CellState> states;
@@ -29,7 +33,7 @@ std::vector<CellState> states_of(const RunPlan& plan, const KnownCells& known,
 
 std::vector<int> missing_repetitions(const CellState& state, int wanted) {
   std::vector<int> missing;
-  if (!state.cell->chosen || !state.has_route()) return missing;
+  if (!state.cell->chosen || !state.has_route() || is_foreign(*state.cell)) return missing;
   for (int i = 0; i < wanted; ++i)
     if (!std::binary_search(state.repetitions.begin(), state.repetitions.end(), i))
       missing.push_back(i);

@@ -11,6 +11,9 @@
 
 namespace routebench {
 
+/// Foreign slicers do not tell the time that planning takes, so there are no samples of it.
+[[nodiscard]] bool is_foreign(const PlannedCell& cell);
+
 /// A cell on its way.
 struct CellState {
   const PlannedCell* cell = nullptr;

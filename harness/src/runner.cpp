@@ -15,6 +15,7 @@
 #include "run_progress.hpp"
 #include "run_redo.hpp"
 #include "run_state.hpp"
+#include "scratch_folder.hpp"
 
 namespace routebench {
 namespace {
@@ -60,6 +61,7 @@ class Execution {
   const RunLog& log_;
   ChildLimits limits_;
   int jobs_;
+  ScratchFolder scratch_{std::filesystem::temp_directory_path()};  ///< of slicers that are killed
   InterruptWatch interrupt_;
   ResultsWriter results_;
   std::vector<CellState> states_;
@@ -139,8 +141,14 @@ void Execution::begin() {
 }
 
 CellWork Execution::work_of(const PlannedCell& cell) const {
-  return {&cell.contender->contender, &cell.model->prepared, &cell.setting->judge, cell.seed,
-          config_.run.keep_layers.of(cell.model->record.layers)};
+  return {&cell.contender->worker,
+          &cell.model->prepared,
+          &cell.setting->judge,
+          cell.seed,
+          config_.run.keep_layers.of(cell.model->record.layers),
+          options_.repair,
+          scratch_.path(),
+          config_.run.memory_mb};
 }
 
 void Execution::store(CellState& state, const ChildEnd& end, const std::string& started_utc,
@@ -166,7 +174,7 @@ void Execution::store(CellState& state, const ChildEnd& end, const std::string& 
   state.outcome = result.outcome;
   state.route_hash = std::move(result.route_hash);
   // With several cells at a time they disturb each other: such times are no samples.
-  if (jobs_ == 1 && state.has_route()) {
+  if (jobs_ == 1 && state.has_route() && !is_foreign(cell)) {
     record.timing = std::move(result.timing);
     state.repetitions.push_back(0);
   }

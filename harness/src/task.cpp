@@ -95,6 +95,7 @@ void visit_keys_of_printer(AnyPrinter& printer, Visit&& visit) {
   visit("travel_mm_s", printer.travel_mm_s, Rule<double>{0.01, 100000, "mm/s"});
   visit("accel_mm_s2", printer.accel_mm_s2, Rule<double>{0.01, 10000000, "mm/s2"});
   visit("junction_mm", printer.junction_mm, Rule<double>{0, 100, "mm"});
+  visit("jerk_mm_s", printer.jerk_mm_s, Rule<double>{0, 10000, "mm/s"});
   visit("filament_mm", printer.filament_mm, Rule<double>{0.01, 1000, "mm"});
   visit("flavour", printer.flavour, Rule<std::string>{kFlavours});
 }

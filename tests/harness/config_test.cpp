@@ -388,13 +388,25 @@ INSTANTIATE_TEST_SUITE_P(
         BadConfig{"contender_unnamed", contender("fill = { planner = \"idle_fill\" }"),
                   "dir/x.toml:3: key `name`: missing from [[contender]]"},
         BadConfig{"contender_empty", contender("name = \"c\""),
-                  "dir/x.toml:4: key `name`: the contender has neither `shell` nor `fill`; give at "
-                  "least one"},
+                  "dir/x.toml:4: key `name`: the contender has neither `shell` nor `fill` nor "
+                  "`slicer`; give at least one"},
         BadConfig{"contender_twice", with(std::string(kContender)),
                   "dir/x.toml:8: key `name`: the name c is taken by the contender at dir/x.toml:4"},
-        BadConfig{"slicer", contender("name = \"c\"\nslicer = \"prusa-slicer\""),
-                  "dir/x.toml:5: key `slicer`: this version does not run foreign slicers; give "
-                  "`shell` or `fill`"},
+        BadConfig{"slicer_name", contender("name = \"c\"\nslicer = \"prusaslicer\""),
+                  "dir/x.toml:5: key `slicer`: unknown slicer 'prusaslicer'; did you mean "
+                  "prusa-slicer?"},
+        BadConfig{"slicer_with_planner",
+                  contender("name = \"c\"\nslicer = \"slic3r\"\nfill = { planner = "
+                            "\"idle_fill\" }"),
+                  "dir/x.toml:6: key `fill`: a contender with a `slicer` has no planners; give "
+                  "either"},
+        BadConfig{"slicer_table", contender("name = \"c\"\nslicer = { comand = \"a\" }"),
+                  "dir/x.toml:5: key `comand`: unknown key of `slicer`; did you mean `command`?"},
+        BadConfig{"slicer_command", contender("name = \"c\"\nslicer = { command = \"a {model}\" }"),
+                  "dir/x.toml:5: key `slicer`: the command lacks {gcode}; write something like "
+                  "\"slicer --output {gcode} {model}\""},
+        BadConfig{"slicer_number", contender("name = \"c\"\nslicer = 3"),
+                  "dir/x.toml:5: key `slicer`: must be a text in quotes, not 3"},
         BadConfig{
             "order_word",
             contender("name = \"c\"\nfill = { planner = \"idle_fill\" }\norder = \"islands\""),

@@ -35,6 +35,20 @@ TEST(GcodeReader, WidthsComeFromMarks) {
   EXPECT_EQ(print.layers[0].route.strokes[1].points.front(), (Point2{10, 0}));
 }
 
+TEST(GcodeReader, TheSlicersOwnEstimateOfTheTimeIsRead) {
+  const auto stated = [](const std::string& duration) {
+    return read_text(kStart + "G1 X10 E1\n; estimated printing time (normal mode) =" + duration +
+                     "\n; estimated printing time (silent mode) = 9s\n")
+        .stated_time_s;
+  };
+  EXPECT_EQ(stated(" 42s"), 42);
+  EXPECT_EQ(stated(" 57m 48s"), 57 * 60 + 48);
+  EXPECT_EQ(stated(" 1d 2h 3m 4s"), ((24 + 2) * 60 + 3) * 60 + 4);
+  for (const char* other : {"", " ", " soon", " 3", " s", " 1h x", " 0s", " 5w"})
+    EXPECT_EQ(stated(other), std::nullopt) << other;
+  EXPECT_EQ(read_text(kStart + "G1 X10 E1\n").stated_time_s, std::nullopt);
+}
+
 TEST(GcodeReader, AStrokeOfAnotherHeightThanItsLayersHasTheWidthOfItsVolume) {
   const double e = section_mm2(0.6) / kFilamentSection;
   const std::string bridge = ";HEIGHT:0.4\n;WIDTH:0.4\nG1 X10 E" + number(10 * e) +

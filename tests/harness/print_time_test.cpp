@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 #include <random>
 #include <vector>
 
@@ -72,6 +73,63 @@ TEST(PrintTime, ARightAngleIsTakenAtTheJunctionSpeed) {
               1e-12);
 }
 
+TEST(PrintTime, ACurveOfShortMovesIsRunThroughAsItsArc) {
+  // Ten turns round a circle of 2 mm in pieces of a degree: v^2 = 1000 * 2. At both ends the nozzle
+  // climbs along the curve, to that speed and from it, v^2 = 2 a s.
+  constexpr double kRadius = 2;
+  std::vector<Point2> points;
+  for (int i = 0; i <= 3600; ++i) {
+    const double angle = i * std::numbers::pi / 180;
+    points.push_back({kRadius * std::cos(angle), kRadius * std::sin(angle)});
+  }
+  const double piece = 2 * kRadius * std::sin(std::numbers::pi / 360);
+  const double speed = std::sqrt(1000 * piece / (std::numbers::pi / 180));
+  EXPECT_NEAR(speed, std::sqrt(1000 * kRadius), 0.001);
+  const double ramp_mm = speed * speed / 2000;
+  const double wanted = 2 * speed / 1000 + (3600 * piece - 2 * ramp_mm) / speed;
+  // The speed is bound at the joints alone; between them the nozzle may be a little faster.
+  EXPECT_NEAR(extrude_s(points), wanted, 0.02 * wanted);
+  EXPECT_LT(extrude_s(points), wanted);
+}
+
+/// From one speed to another and further, at 1000 mm/s2 and up to 100 mm/s.
+double leg_s(double length_mm, double from, double to) {
+  const double ramps_mm = (2 * 100.0 * 100 - from * from - to * to) / 2000;
+  return (2 * 100 - from - to) / 1000 + (length_mm - ramps_mm) / 100;
+}
+
+TEST(PrintTime, ByJerkCornersAndEndsHaveASpeedAtOnce) {
+  Printer printer = round_printer();
+  printer.jerk_mm_s = 10;
+  EXPECT_NEAR(extrude_s({{0, 0}, {100, 0}}, printer), leg_s(100, 10, 10), 1e-12);
+  // A reversal and a right angle along the axes: the axis that stops changes by all it has.
+  const double stop = 2 * leg_s(100, 10, 10);
+  EXPECT_NEAR(extrude_s({{0, 0}, {100, 0}, {0, 0}}, printer), stop, 1e-12);
+  EXPECT_NEAR(extrude_s({{0, 0}, {100, 0}, {100, 100}}, printer), stop, 1e-12);
+  // The same angle with its sides across: both axes have v / sqrt 2, one keeps it, one reverses.
+  const double d = 100 / std::sqrt(2.0);
+  const double across = 10 * std::sqrt(2.0);
+  EXPECT_NEAR(extrude_s({{0, 0}, {d, d}, {2 * d, 0}}, printer), 2 * leg_s(100, 10, across), 1e-9);
+  // By a 3-4-5 angle from the axis: x falls from v to 0.8 v, y rises from 0 to 0.6 v.
+  const double slight = 10 / 0.6;
+  EXPECT_NEAR(extrude_s({{0, 0}, {100, 0}, {180, 60}}, printer), 2 * leg_s(100, 10, slight), 1e-9);
+  // Straight on there is no corner; a jerk beyond the speed leaves nothing to wait for.
+  EXPECT_NEAR(extrude_s({{0, 0}, {40, 0}, {100, 0}}, printer), leg_s(100, 10, 10), 1e-12);
+  printer.jerk_mm_s = 1000;
+  EXPECT_NEAR(extrude_s({{0, 0}, {100, 0}, {100, 100}}, printer), 2.0, 1e-12);
+}
+
+TEST(PrintTime, ByJerkARetractionStopsTheNozzleAtThatSpeed) {
+  Printer printer = round_printer();
+  printer.jerk_mm_s = 10;
+  std::vector<Move> moves = extruding({{0, 0}, {100, 0}});
+  moves.push_back({{100, 0}, {200, 0}, false, true});
+  const PrintTime time = print_time(moves, printer);
+  EXPECT_NEAR(time.extrude_s, leg_s(100, 10, 10), 1e-12);
+  EXPECT_NEAR(time.travel_s, 2 * 190.0 / 1000 + (100 - 2 * (40000 - 100) / 2000.0) / 200, 1e-12);
+  EXPECT_NEAR(time.retract_s, 2 * 0.8 / 40, 1e-12);
+}
+
 TEST(PrintTime, WhatComesLaterIsSeenInTime) {
   // A move of 0.1 mm before a reversal: the long one before it must already be slow enough to stop.
   const double v2 = 2 * 1000 * 0.1;  // at the joint, straight on: stops within 0.1 mm
@@ -135,8 +193,13 @@ double slow_oracle_s(const std::vector<Point2>& points, const Printer& printer, 
     const Point2 on = points[i + 1] - points[i];
     const double t = std::abs(std::atan2(cross(back, on), dot(back, on)));
     const double s = std::sin(t / 2);
-    places.push_back(
-        {s >= 1 ? top2 : std::min(top2, printer.accel_mm_s2 * printer.junction_mm * s / (1 - s))});
+    double allowed2 =
+        s >= 1 ? top2 : std::min(top2, printer.accel_mm_s2 * printer.junction_mm * s / (1 - s));
+    const double on_mm = std::sqrt(dot(on, on));
+    const double turn = std::numbers::pi - t;
+    if (on_mm < 1 && turn < std::numbers::pi / 4 && turn > 1e-9)
+      allowed2 = std::min(allowed2, printer.accel_mm_s2 * on_mm / turn);
+    places.push_back({allowed2});
   }
   places.push_back({0});
   for (std::size_t i = 1; i < places.size(); ++i)

@@ -217,9 +217,10 @@ TEST_F(ScoreCommand, LayersWithoutCounterpartAreReported) {
   const json higher = score({"--model", "shape:box?x=12&y=12&z=1"}).json();
   EXPECT_EQ(higher["unpaired_z_mm"].size(), 5u);
   EXPECT_NEAR(higher["unpaired_z_mm"][0].get<double>(), 1.2, 1e-9);
-  EXPECT_NE(higher["warnings"][0].get<std::string>().find("5 of 10 layers belong to none"),
-            std::string::npos)
-      << higher["warnings"];
+  EXPECT_EQ(higher["outcome"], "off_task") << "what is not judged is not valid";
+  EXPECT_TRUE(higher["reason"].get<std::string>().ends_with(
+      "5 of 10 layers of the G-code are none of the model's, the first at z = 1.2 mm"))
+      << higher["reason"];
 }
 
 TEST_F(ScoreCommand, WithoutAModelWhatNeedsNoneIsMeasured) {
@@ -228,9 +229,10 @@ TEST_F(ScoreCommand, WithoutAModelWhatNeedsNoneIsMeasured) {
   EXPECT_EQ(run.exit_code, 0) << run.err;
   const json scored = run.json();
   const std::set<std::string> absent = {
-      "crossings",    "travel_outside_mm", "hollow_mm",     "covered", "skipped",
-      "worst_layer",  "deposit",           "doubled",       "spilled", "outline_covered",
-      "plan_wall_ns", "plan_cpu_ns",       "peak_rss_bytes"};
+      "crossings",      "travel_outside_mm", "hollow_mm",    "covered",
+      "skipped",        "worst_layer",       "deposit",      "doubled",
+      "spilled",        "outline_covered",   "plan_wall_ns", "plan_cpu_ns",
+      "peak_rss_bytes", "job_wall_s",        "job_cpu_s",    "stated_time_s"};
   for (const MetricInfo& metric : metric_table()) {
     const std::string name(metric.name);
     const json& value = scored["totals"][name];

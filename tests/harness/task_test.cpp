@@ -80,7 +80,7 @@ TEST(Task, EveryListedPrinterValueCanBeSetAgain) {
   Printer copy;
   for (const KeyValue& entry : printer_values(printer))
     set_printer_value(copy, entry.key, entry.value);
-  ASSERT_EQ(printer_values(printer).size(), 11U);
+  ASSERT_EQ(printer_values(printer).size(), 12U);
   for (const KeyValue& entry : printer_values(printer))
     EXPECT_EQ(value_of(printer_values(copy), entry.key), entry.value) << entry.key;
   EXPECT_EQ(copy.retract_policy, RetractPolicy::kLengthAndCrossing);

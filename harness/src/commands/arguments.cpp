@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "routebench/geometry/error.hpp"
+#include "routebench/geometry/grid.hpp"
 
 namespace routebench {
 namespace {
@@ -112,6 +113,13 @@ void add_jobs_option(CLI::App& command, int& jobs, const std::string& remark) {
       ->type_name("N")
       ->check(CLI::Range(0, 4096).description(""))
       ->capture_default_str();
+}
+
+void add_offset_option(CLI::App& command, std::string& offset) {
+  command
+      .add_option("--offset", offset,
+                  "What to add to the G-code's places, in mm; else bounding boxes are aligned")
+      ->type_name("X,Y");
 }
 
 void add_repair_flag(CLI::App& command, bool& repair) {
@@ -237,6 +245,24 @@ std::string readable(double value) {
   std::array<char, 64> text{};
   std::snprintf(text.data(), text.size(), format, value);
   return text.data();
+}
+
+std::optional<Point2> offset_of(const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  std::array<double, 2> numbers{};
+  const char* at = text.data();
+  const char* const end = text.data() + text.size();
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    const auto [stop, failure] = std::from_chars(at, end, numbers[i]);
+    constexpr double kFurthestMm = 1e6;
+    const bool last = i + 1 == numbers.size();
+    if (failure != std::errc{} || !(std::abs(numbers[i]) <= kFurthestMm) ||
+        (last ? stop != end : stop == end || *stop != ','))
+      throw Error(ErrorKind::kBadUsage,
+                  "--offset: '" + text + "' is no place; write x,y in mm, such as 10,-2.5");
+    at = stop + 1;
+  }
+  return snap(Point2{numbers[0], numbers[1]});
 }
 
 }  // namespace routebench

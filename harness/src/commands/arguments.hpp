@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,10 @@ void add_printer_option(CLI::App& command, std::vector<std::string>& settings);
 void add_plugin_option(CLI::App& command, std::vector<std::string>& files);
 void add_jobs_option(CLI::App& command, int& jobs, const std::string& remark = {});
 void add_repair_flag(CLI::App& command, bool& repair);
+void add_offset_option(CLI::App& command, std::string& offset);
+
+/// "12.5,-3" as a point on the grid; nothing of an empty text. Throws Error{kBadUsage} for another.
+[[nodiscard]] std::optional<Point2> offset_of(const std::string& text);
 
 /// How an experiment tells on the standard error how far it is.
 void add_progress_option(CLI::App& command, std::string& form);

@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "arguments.hpp"
@@ -11,6 +12,8 @@
 #include "planner_process.hpp"
 #include "routebench/geometry/error.hpp"
 #include "routebench/harness/commands.hpp"
+#include "routebench/harness/gcode_reader.hpp"
+#include "routebench/harness/gcode_score.hpp"
 #include "routebench/harness/gcode_writer.hpp"
 #include "routebench/harness/parallel.hpp"
 #include "routebench/harness/pipeline.hpp"
@@ -25,6 +28,8 @@ struct PlanArguments {
   std::string model;
   std::string shell;
   std::string fill;
+  std::string from_gcode;
+  std::string offset;
   std::string order = "island";
   std::vector<std::string> set;
   std::vector<std::string> task;
@@ -42,7 +47,8 @@ struct PlanArguments {
 ContenderSpec contender_of(const PlanArguments& arguments, const Registry& registry) {
   if (arguments.shell.empty() && arguments.fill.empty())
     throw Error(ErrorKind::kBadUsage,
-                "no planner: give --shell NAME, --fill NAME or both (see routebench planners)");
+                "no planner: give --shell NAME, --fill NAME or both (see routebench planners), or "
+                "--from-gcode FILE");
   ContenderSpec spec;
   spec.order = layer_order(arguments.order);
   spec.name = arguments.shell;
@@ -53,6 +59,27 @@ ContenderSpec contender_of(const PlanArguments& arguments, const Registry& regis
   return spec;
 }
 
+/// Whence the strokes come: planners make them, or a file has them.
+using StrokeSource = std::variant<Contender, GcodePrint>;
+
+StrokeSource source_of(const PlanArguments& arguments, const Registry& registry,
+                       const Judge& judge) {
+  if (arguments.from_gcode.empty()) {
+    if (!arguments.offset.empty())
+      throw Error(ErrorKind::kBadUsage, "--offset means nothing without --from-gcode FILE");
+    return Contender(contender_of(arguments, registry), registry);
+  }
+  for (const auto& [option, given] :
+       {std::pair{"--shell", !arguments.shell.empty()},
+        std::pair{"--fill", !arguments.fill.empty()}, std::pair{"--set", !arguments.set.empty()}})
+    if (given)
+      throw Error(ErrorKind::kBadUsage, std::string(option) +
+                                            ": the strokes come --from-gcode, so there is no "
+                                            "planner; give either");
+  return read_gcode_file(arguments.from_gcode, {.layer_height_mm = judge.task().layer_height_mm,
+                                                .filament_mm = judge.printer().filament_mm});
+}
+
 /// One call of `routebench plan`, from its arguments to its outputs.
 class Plan {
  public:
@@ -60,11 +87,12 @@ class Plan {
       : arguments_(arguments),
         judge_(task_of(arguments.task), printer_of(arguments.printer)),
         planners_(load_planners(arguments.plugins)),
-        parallel_for_(parallel_loop(arguments.jobs)) {
+        parallel_for_(parallel_loop(arguments.jobs)),
+        offset_(offset_of(arguments.offset)) {
     require_all_loaded(planners_);
     print_refused(planners_);
     add_commands(planners_, std::vector{arguments.shell, arguments.fill});
-    contender_.emplace(contender_of(arguments, planners_.registry), planners_.registry);
+    source_.emplace(source_of(arguments, planners_.registry, judge_));
   }
 
   /// Returns the exit code.
@@ -90,9 +118,17 @@ class Plan {
 
  private:
   void plan_and_judge() {
+    if (const auto* print = std::get_if<GcodePrint>(&*source_)) {
+      PlacedPrint placed =
+          place_print(*print, model_, chosen_, offset_, judge_.task().line_width_mm, parallel_for_);
+      cell_ = judge_print(judge_, model_, chosen_, placed, parallel_for_);
+      planned_ = std::move(placed.layers);
+      print_warnings(arguments_.from_gcode, print->warnings);
+      return;
+    }
     try {
-      planned_ = plan_layers(*contender_, model_, chosen_, judge_.task(), arguments_.seed, {},
-                             parallel_for_);
+      planned_ = plan_layers(std::get<Contender>(*source_), model_, chosen_, judge_.task(),
+                             arguments_.seed, {}, parallel_for_);
     } catch (const PlannerDied& death) {
       cell_.verdict = {Outcome::kCrashed, death.what()};
     } catch (const Error& error) {
@@ -104,20 +140,26 @@ class Plan {
       return;
     }
     cell_ = judge_layers(judge_, model_, chosen_, planned_, parallel_for_);
-    cell_.totals[metric_index("peak_rss_bytes")] = contender_->peak_rss_bytes();
+    cell_.totals[metric_index("peak_rss_bytes")] = std::get<Contender>(*source_).peak_rss_bytes();
   }
 
   [[nodiscard]] bool has_route() const { return planned_.size() == chosen_.size(); }
+  [[nodiscard]] Json source() const {
+    const auto* contender = std::get_if<Contender>(&*source_);
+    return contender != nullptr ? json_of(*contender) : Json{{"gcode", arguments_.from_gcode}};
+  }
 
   [[nodiscard]] Json document() const {
-    return plan_document(
-        {*contender_, model_.sliced, judge_, arguments_.seed, chosen_.size(), cell_});
+    const bool planned = std::holds_alternative<Contender>(*source_);
+    return plan_document({source(), model_.sliced, judge_,
+                          planned ? std::optional(arguments_.seed) : std::nullopt, chosen_.size(),
+                          cell_});
   }
 
   void add_gcode(OutputSet& outputs) const {
     outputs.add(arguments_.gcode, [&](std::ostream& out) {
-      const std::vector<std::string> comments = {
-          "model = " + arguments_.model, "contender = " + text_of(json_of(*contender_), true)};
+      const std::vector<std::string> comments = {"model = " + arguments_.model,
+                                                 "contender = " + text_of(source(), true)};
       GcodeWriter writer(out, judge_.task(), judge_.printer(), comments);
       for (std::size_t i = 0; i < chosen_.size(); ++i)
         writer.write_layer(model_.sliced.layers[chosen_[i]], planned_[i]);
@@ -137,13 +179,16 @@ class Plan {
   }
 
   void print_table(std::ostream& out) const {
-    const ContenderSpec& spec = contender_->spec();
     out << "model      " << arguments_.model << ", " << chosen_.size() << " of "
         << model_.sliced.layers.size() << " layers";
     if (model_.sliced.report.repaired_layers > 0)
       out << " (" << model_.sliced.report.repaired_layers << " repaired)";
-    out << "\ncontender  " << spec.name << ", order " << to_string(spec.order) << "\noutcome    "
-        << to_string(cell_.verdict.outcome);
+    if (const auto* contender = std::get_if<Contender>(&*source_))
+      out << "\ncontender  " << contender->spec().name << ", order "
+          << to_string(contender->spec().order);
+    else
+      out << "\nstrokes    of " << arguments_.from_gcode;
+    out << "\noutcome    " << to_string(cell_.verdict.outcome);
     if (!cell_.verdict.reason.empty()) out << ": " << cell_.verdict.reason;
     out << '\n';
     const std::vector<Row> rows = rows_of(cell_.totals);
@@ -155,7 +200,8 @@ class Plan {
   Judge judge_;
   PlannerSet planners_;
   ParallelFor parallel_for_;
-  std::optional<Contender> contender_;
+  std::optional<Point2> offset_;
+  std::optional<StrokeSource> source_;
   PreparedModel model_;
   std::vector<std::size_t> chosen_;
   std::vector<PlannedLayer> planned_;
@@ -170,6 +216,11 @@ void add_plan_command(CLI::App& app, int& exit_code) {
   add_model_argument(command, arguments->model);
   command.add_option("--shell", arguments->shell, "Planner of the walls")->type_name("NAME");
   command.add_option("--fill", arguments->fill, "Planner of the inside")->type_name("NAME");
+  command
+      .add_option("--from-gcode", arguments->from_gcode,
+                  "Take the strokes of a file, of any slicer, in the place of planners")
+      ->type_name("FILE");
+  add_offset_option(command, arguments->offset);
   add_repeated(command, "--set", arguments->set, "SLOT.KEY=VALUE",
                "A planner's parameter, such as fill.angle_deg=30 (see routebench planners NAME)");
   command

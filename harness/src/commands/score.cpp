@@ -1,19 +1,15 @@
 #include <CLI/CLI.hpp>
-#include <array>
-#include <charconv>
 #include <cmath>
 #include <iostream>
 #include <memory>
 #include <optional>
 #include <string>
-#include <system_error>
 #include <vector>
 
 #include "arguments.hpp"
 #include "json_documents.hpp"
 #include "layer_selection.hpp"
 #include "routebench/geometry/error.hpp"
-#include "routebench/geometry/grid.hpp"
 #include "routebench/harness/commands.hpp"
 #include "routebench/harness/gcode_reader.hpp"
 #include "routebench/harness/gcode_score.hpp"
@@ -37,24 +33,6 @@ struct ScoreArguments {
   bool repair = false;
 };
 
-/// "12.5,-3" as a point on the grid.
-Point2 offset_of(const std::string& text) {
-  std::array<double, 2> numbers{};
-  const char* at = text.data();
-  const char* const end = text.data() + text.size();
-  for (std::size_t i = 0; i < numbers.size(); ++i) {
-    const auto [stop, failure] = std::from_chars(at, end, numbers[i]);
-    constexpr double kFurthestMm = 1e6;
-    const bool last = i + 1 == numbers.size();
-    if (failure != std::errc{} || !(std::abs(numbers[i]) <= kFurthestMm) ||
-        (last ? stop != end : stop == end || *stop != ','))
-      throw Error(ErrorKind::kBadUsage,
-                  "--offset: '" + text + "' is no place; write x,y in mm, such as 10,-2.5");
-    at = stop + 1;
-  }
-  return snap(Point2{numbers[0], numbers[1]});
-}
-
 /// One call of `routebench score`, from its arguments to its outputs.
 class ScoreFile {
  public:
@@ -73,8 +51,7 @@ class ScoreFile {
 
   /// Returns the exit code.
   int run() {
-    const std::optional<Point2> offset =
-        arguments_.offset.empty() ? std::nullopt : std::optional(offset_of(arguments_.offset));
+    const std::optional<Point2> offset = offset_of(arguments_.offset);
     print_ = read_gcode_file(arguments_.file, {.layer_height_mm = judge_.task().layer_height_mm,
                                                .filament_mm = judge_.printer().filament_mm});
     if (arguments_.model.empty()) {
@@ -116,12 +93,6 @@ class ScoreFile {
           std::to_string(others) + " of " + std::to_string(print_.layers.size()) +
           " layers are not as high as the task's layer_height_mm = " + readable(height_mm) +
           "; the first of them has " + readable(other_mm) + " mm");
-    if (!score_.pairs.unpaired.empty())
-      print_.warnings.push_back(
-          std::to_string(score_.pairs.unpaired.size()) + " of " +
-          std::to_string(print_.layers.size()) +
-          " layers belong to none of the model and are not judged; the first is at z = " +
-          readable(print_.layers[score_.pairs.unpaired.front()].z_mm) + " mm");
     // Widths by marks are believed; E may tell another story.
     constexpr double kApart = 0.02;
     const std::optional<double> laid = score_.cell.totals[metric_index("filament_mm3")];
@@ -180,10 +151,7 @@ void add_score_command(CLI::App& app, int& exit_code) {
                   "What the file should print, as for plan; without it only what needs no model is "
                   "measured")
       ->type_name("MODEL");
-  command
-      .add_option("--offset", arguments->offset,
-                  "What to add to the file's places, in mm; else bounding boxes are aligned")
-      ->type_name("X,Y");
+  add_offset_option(command, arguments->offset);
   add_task_option(command, arguments->task);
   add_printer_option(command, arguments->printer);
   command

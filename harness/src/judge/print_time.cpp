@@ -4,11 +4,16 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <numbers>
 
 #include "routebench/geometry/vec.hpp"
 
 namespace routebench::judging {
 namespace {
+
+/// A move shorter than this after a turn slighter than this (45 degrees) is a piece of a curve.
+constexpr double kShortMoveMm = 1;
+constexpr double kSlightTurnCos = std::numbers::sqrt2 / 2;
 
 /// A move as the look-ahead sees it. Speeds are squared: (mm/s)^2.
 struct Leg {
@@ -25,7 +30,27 @@ double junction2(Point2 before, Point2 after, const Printer& printer) {
   const double cos_turn = std::clamp(dot(before, after) / lengths, -1.0, 1.0);
   const double sin_half = std::sqrt((1 + cos_turn) / 2);
   if (sin_half >= 1) return std::numeric_limits<double>::infinity();
-  return printer.accel_mm_s2 * printer.junction_mm * sin_half / (1 - sin_half);
+  const double corner2 = printer.accel_mm_s2 * printer.junction_mm * sin_half / (1 - sin_half);
+  const double after_mm = std::sqrt(dot(after, after));
+  if (after_mm >= kShortMoveMm || cos_turn <= kSlightTurnCos) return corner2;
+  return std::min(corner2, printer.accel_mm_s2 * after_mm / std::acos(cos_turn));
+}
+
+/// The change of speed of one axis between two moves. One that reverses stops on the way, so it
+/// changes by the larger part alone.
+double axis_change(double before, double after) {
+  return before * after > 0 ? std::abs(after - before)
+                            : std::max(std::abs(before), std::abs(after));
+}
+
+/// As junction2, by the jerk of each axis; both moves are as fast as the slower one may be.
+double jerk_junction2(Point2 before, Point2 after, double top2, double jerk_mm_s) {
+  const double top = std::sqrt(top2);
+  const Point2 exit = (top / std::sqrt(dot(before, before))) * before;
+  const Point2 entry = (top / std::sqrt(dot(after, after))) * after;
+  const double change = std::max(axis_change(exit.x, entry.x), axis_change(exit.y, entry.y));
+  const double share = change > jerk_mm_s ? jerk_mm_s / change : 1;
+  return top2 * share * share;
 }
 
 /// Time from one speed to another over a leg.
@@ -44,6 +69,7 @@ PrintTime print_time(const std::vector<Move>& moves, const Printer& printer) {
   std::vector<Leg> legs;
   Point2 before{};
   bool standing = true;
+  const double jerk2 = printer.jerk_mm_s * printer.jerk_mm_s;
   for (const Move& move : moves) {
     const Point2 way = move.to - move.from;
     if (move.retracted)
@@ -53,8 +79,12 @@ PrintTime print_time(const std::vector<Move>& moves, const Printer& printer) {
     if (way != Point2{}) {
       const double top = move.extrudes ? printer.extrude_mm_s : printer.travel_mm_s;
       Leg leg{std::sqrt(dot(way, way)), top * top, 0, move.extrudes};
+      const double slower2 = legs.empty() ? leg.top2 : std::min(leg.top2, legs.back().top2);
+      leg.entry2 = std::min(slower2, jerk2);
       if (!standing)
-        leg.entry2 = std::min({leg.top2, legs.back().top2, junction2(before, way, printer)});
+        leg.entry2 = jerk2 > 0 ? std::max(leg.entry2,
+                                          jerk_junction2(before, way, slower2, printer.jerk_mm_s))
+                               : std::min(slower2, junction2(before, way, printer));
       legs.push_back(leg);
       before = way;
       standing = false;
@@ -62,13 +92,14 @@ PrintTime print_time(const std::vector<Move>& moves, const Printer& printer) {
     standing = standing || move.retracted;
   }
 
-  double next2 = 0;  // the last leg ends at rest
+  const double last2 = legs.empty() ? 0 : std::min(legs.back().top2, jerk2);
+  double next2 = last2;
   for (std::size_t i = legs.size(); i-- > 0;) {
     legs[i].entry2 = std::min(legs[i].entry2, next2 + 2 * printer.accel_mm_s2 * legs[i].length_mm);
     next2 = legs[i].entry2;
   }
   for (std::size_t i = 0; i < legs.size(); ++i) {
-    double exit2 = 0;
+    double exit2 = std::min(last2, legs[i].entry2 + 2 * printer.accel_mm_s2 * legs[i].length_mm);
     if (i + 1 < legs.size()) {
       Leg& next = legs[i + 1];
       next.entry2 =

@@ -31,6 +31,12 @@ struct PrintTime {
 ///       v_j^2 = a d sin(t/2) / (1 - sin(t/2)),
 ///   unbounded straight on (t = 180 degrees), zero for a reversal (t = 0), and no more than the
 ///   nominal speed of either move. Moves of different kinds meet in the same way.
+/// - Curves. A move shorter than 1 mm after a turn by u < 45 degrees is taken for a piece of an arc
+///   of the radius L/u, which the acceleration lets be run through with no more than
+///       v_j^2 = a L / u.
+/// - Jerk, if the printer has one, in the place of both (Marlin's classic rule): from rest and to
+///   rest a move may have the speed j at once; where two moves meet, no axis may change its speed by
+///   more than j, an axis that reverses being counted by the larger part alone.
 /// - Look-ahead. A move of length L that begins with speed v0 can end with no more than v1 with
 ///   v1^2 = v0^2 + 2 a L; what the moves after one allow is carried backwards by the same law, then
 ///   what those before it allow forwards.
@@ -41,7 +47,8 @@ struct PrintTime {
 ///
 /// Moves of no length take no time; a retraction is paid for nevertheless.
 /// Cost   linear.
-/// Source the planners of Grbl and Marlin (junction deviation: S. K. Jeon, 2011).
+/// Source the planners of Grbl and Marlin (junction deviation: S. K. Jeon, 2011; curves:
+/// Marlin 2.0).
 [[nodiscard]] PrintTime print_time(const std::vector<Move>& moves, const Printer& printer);
 
 }  // namespace routebench::judging

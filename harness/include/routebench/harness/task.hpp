@@ -75,6 +75,7 @@ struct Printer {
   double travel_mm_s = 150;
   double accel_mm_s2 = 1000;
   double junction_mm = 0.013;      ///< junction deviation
+  double jerk_mm_s = 0;            ///< classic jerk; 0: corners go by junction deviation
   double filament_mm = 1.75;       ///< diameter
   std::string flavour = "marlin";  ///< of G-code; see GcodeWriter
 };
