@@ -58,6 +58,10 @@ class FilesTest(PlotTestCase):
                 f"{stem}.{ending}"
                 for stem in (
                     "outcomes",
+                    "ratios",
+                    "profiles",
+                    "heat-travel_mm",
+                    "heat-strokes",
                     "bars-travel_mm",
                     "bars-strokes",
                     "scatter-travel_mm-plan_cpu_ns",
@@ -66,7 +70,7 @@ class FilesTest(PlotTestCase):
                 )
                 for ending in ("png", "svg")
             ]
-            + ["summary.md", "table.md", "table.tex"],
+            + ["summary.md", "table.md", "table.tex", "comparison.tex"],
         )
         for name in names:
             self.assertGreater((place / name).stat().st_size, 0, name)

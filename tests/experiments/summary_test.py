@@ -44,7 +44,7 @@ class SummaryTest(PlotTestCase):
 
     def part(self, baseline: str | None = None) -> Part:
         """The only setting's comparison."""
-        (part,) = summary(self.results, baseline)
+        (part,) = summary(self.results, baseline).parts
         return part
 
     def test_baseline_is_valid_on_most_models(self) -> None:

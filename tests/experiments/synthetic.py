@@ -130,11 +130,21 @@ class Database:
         self._insert("contender", row_id, name, name, "{}", hash_)
         return row_id
 
-    def setting(self, label: str = "") -> int:
+    def setting(
+        self,
+        label: str = "",
+        printer: dict[str, object] | None = None,
+        task: dict[str, object] | None = None,
+    ) -> int:
         """Adds a setting of task and printer."""
         row_id = self._next("setting")
         self._insert(
-            "setting", row_id, label, json.dumps(TASK), "{}", f"hash{row_id}"
+            "setting",
+            row_id,
+            label,
+            json.dumps(TASK if task is None else task),
+            json.dumps(printer or {}),
+            f"hash{row_id}",
         )
         return row_id
 
