@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from functools import lru_cache
 
 import numpy as np
@@ -41,6 +42,30 @@ def chi_squared_tail(x: float, freedom: int) -> float:
     return min(1.0, tail)
 
 
+def student_cdf(t: float, freedom: int) -> float:
+    """Share of Student's distribution below t.
+
+    Source: the closed forms for whole degrees of freedom (Abramowitz and Stegun 1964, 26.7.3 and
+    26.7.4).
+    """
+    angle = math.atan(t / math.sqrt(freedom))
+    sine, cosine_squared = math.sin(angle), math.cos(angle) ** 2
+    total, term = 0.0, 1.0
+    start = 1 + freedom % 2
+    for step in range(start, freedom, 2):
+        total += term
+        term *= cosine_squared * step / (step + 1)
+    if freedom % 2 == 0:
+        return 0.5 + sine * total / 2
+    return 0.5 + (angle + sine * math.cos(angle) * total) / math.pi
+
+
+@lru_cache(maxsize=None)
+def student_quantile(share: float, freedom: int) -> float:
+    """The t below which the given share, at least a half, of Student's distribution lies."""
+    return _quantile(lambda t: student_cdf(t, freedom), share)
+
+
 def studentized_range_cdf(q: float, groups: int) -> float:
     """Probability that the range of so many standard normal numbers is at most q.
 
@@ -61,12 +86,17 @@ def studentized_range_quantile(share: float, groups: int) -> float:
     """The q up to which the given share of the ranges lies; for any number of groups above 1."""
     if not 0 < share < 1 or groups < 2:
         raise ValueError(f"no quantile {share} of the range of {groups}")
+    return _quantile(lambda q: studentized_range_cdf(q, groups), share)
+
+
+def _quantile(cdf: Callable[[float], float], share: float) -> float:
+    """Where a distribution function reaches the share, from zero on, by bisection."""
     low, high = 0.0, 2.0
-    while studentized_range_cdf(high, groups) < share:
+    while cdf(high) < share:
         high *= 2
-    while high - low > 1e-10:
+    while high - low > 1e-12 * high:
         middle = (low + high) / 2
-        if studentized_range_cdf(middle, groups) < share:
+        if cdf(middle) < share:
             low = middle
         else:
             high = middle

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -26,7 +25,7 @@ from . import (
 from .comparison import baseline_of, compared_metrics
 from .errors import PlotError
 from .matrix import MODELS_PER_PAGE
-from .naming import file_slugs
+from .naming import file_slugs, nearest
 from .quantities import in_sentence
 from .results import TIMED_METRICS, Item, Metric, Results
 from .sheet import Sheet
@@ -80,13 +79,9 @@ def chosen_metrics(
         metric = results.metric(name)
         if metric is None:
             known = [m.name for m in results.metrics]
-            near = difflib.get_close_matches(name, known, n=1)
-            hint = (
-                f"did you mean '{near[0]}'?"
-                if near
-                else f"it has {', '.join(known)}"
+            raise PlotError(
+                f"{results.database}: no metric '{name}'{nearest(name, known)}"
             )
-            raise PlotError(f"{results.database}: no metric '{name}'; {hint}")
         chosen.append(metric)
     return chosen
 

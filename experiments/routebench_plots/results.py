@@ -207,6 +207,20 @@ class Results:
         """Whether any valid cell has this metric."""
         return any(self.all_values(s, metric) for s in self.settings)
 
+    def last_run(self) -> dict[str, Any]:
+        """The row of the run whose cells these are: where, when and with what it ran."""
+        names = [row[1] for row in self._query("PRAGMA table_info(run)")]
+        rows = self._query("SELECT * FROM run ORDER BY run_id DESC LIMIT 1")
+        return dict(zip(names, rows[0])) if rows else {}
+
+    def mesh_hash(self, setting: Item, model: Item) -> str:
+        """Equal for equal meshes; empty where the setting lacks the model."""
+        rows = self._query(
+            "SELECT mesh_hash FROM model WHERE model_id = ?",
+            (self._model_rows.get((setting.row_id, model.row_id)),),
+        )
+        return str(rows[0][0]) if rows else ""
+
     def task_number(self, setting: Item, key: str) -> float | None:
         """A number that the setting's task has under `key`, if any."""
         return _number(self._tasks[setting.row_id].get(key))

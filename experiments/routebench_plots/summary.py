@@ -25,6 +25,7 @@ from .errors import PlotError
 from .inference import LEVEL
 from .latex import latex_name, latex_text
 from .markdown import markdown_table, markdown_text
+from .naming import nearest
 from .quantities import in_sentence
 from .ranks import friedman_text
 from .results import VALID, Item, Metric, Results
@@ -103,8 +104,8 @@ def summary(results: Results, baseline: str | None = None) -> Summary:
     names = [contender.label for contender in results.contenders]
     if baseline is not None and baseline not in names:
         raise PlotError(
-            f"{results.database}: no contender '{baseline}'; it has "
-            + ", ".join(names)
+            f"{results.database}: no contender '{baseline}'"
+            + nearest(baseline, names)
         )
     return Summary(
         [_part(results, setting, baseline) for setting in results.settings],

@@ -17,11 +17,12 @@ except ImportError:
 needs_scipy = unittest.skipIf(scipy_stats is None, "python3-scipy is not installed")
 
 # Accuracy of C4.5 and three of its variants on 14 data sets: J. Demšar, Statistical comparisons of
-# classifiers over multiple data sets, JMLR 7, 2006, table 6.
+# classifiers over multiple data sets, JMLR 7, 2006, table 6. On the last but one the printed numbers
+# of the last two tie at .975, but his ranks put the former first.
 DEMSAR = {
     "C4.5": (.763, .599, .954, .628, .882, .936, .661, .583, .775, 1.0, .940, .619, .972, .957),
     "C4.5+m": (.768, .591, .971, .661, .888, .931, .668, .583, .838, 1.0, .962, .666, .981, .978),
-    "C4.5+cf": (.771, .590, .968, .654, .886, .916, .609, .563, .866, 1.0, .965, .614, .975, .946),
+    "C4.5+cf": (.771, .590, .968, .654, .886, .916, .609, .563, .866, 1.0, .965, .614, .9751, .946),
     "C4.5+m+cf": (.798, .569, .967, .657, .898, .931, .685, .625, .875, 1.0, .962, .669, .975, .970),
 }  # fmt: skip
 
@@ -49,6 +50,11 @@ class DistributionTest(unittest.TestCase):
             self.assertAlmostEqual(distributions.chi_squared_tail(x, 2), math.exp(-x / 2))
         self.assertAlmostEqual(distributions.chi_squared_tail(3.841459, 1), 0.05, places=7)
 
+    def test_student_textbook(self) -> None:
+        for freedom, expected in ((1, 12.706), (2, 4.303), (5, 2.571), (30, 2.042)):
+            found = distributions.student_quantile(0.975, freedom)
+            self.assertAlmostEqual(found, expected, delta=0.0005)
+
     def test_no_quantile_of_nothing(self) -> None:
         for share, groups in ((0.95, 1), (0.0, 3), (1.0, 3)):
             with self.assertRaises(ValueError):
@@ -60,6 +66,11 @@ class DistributionTest(unittest.TestCase):
             self.assertAlmostEqual(
                 distributions.chi_squared_tail(x, freedom),
                 scipy_stats.chi2.sf(x, freedom),
+                places=12,
+            )
+            self.assertAlmostEqual(
+                distributions.student_cdf(x / 5, freedom),
+                scipy_stats.t.cdf(x / 5, freedom),
                 places=12,
             )
         for groups in (3, 17, 60):
@@ -185,7 +196,7 @@ class RankTest(unittest.TestCase):
 
     def test_groups(self) -> None:
         """A group is as long as it can be, and none lies within another."""
-        self.assertEqual(inference.alike([1, 1.5, 2.9, 3.0, 5], 2.0), [(0, 3)])
+        self.assertEqual(inference.alike([1, 1.5, 2.9, 3.0, 5.1], 2.0), [(0, 3)])
         self.assertEqual(inference.alike([1, 2, 3, 4], 1.0), [(0, 1), (1, 2), (2, 3)])
         self.assertEqual(inference.alike([1, 3, 5], 1.0), [])
         self.assertEqual(inference.alike([1, 2, 3], 9.0), [(0, 2)])
@@ -214,13 +225,17 @@ class IntervalTest(unittest.TestCase):
         )
 
     def test_holds_the_true_median_as_often_as_it_says(self) -> None:
-        """95 % of 400 tries, give or take the spread of such a count and of the bootstrap."""
+        """95 % of 400 tries, give or take the spread of such a count; more with few models."""
         rng = random.Random(11)
-        held = 0
-        for _ in range(400):
-            found = inference.median_interval([rng.lognormvariate(0, 0.5) for _ in range(15)])
-            held += found.low <= 1 <= found.high
-        self.assertTrue(0.91 <= held / 400 <= 0.99, held)
+        for models in (6, 8, 15, 30):
+            held = 0
+            for _ in range(400):
+                found = inference.median_interval(
+                    [rng.lognormvariate(0, 0.5) for _ in range(models)]
+                )
+                held += found.low <= 1 <= found.high
+            with self.subTest(models=models, held=held):
+                self.assertGreaterEqual(held / 400, 0.95 - 3 * math.sqrt(0.95 * 0.05 / 400))
 
     def test_repetitions_widen_it(self) -> None:
         """Models that all have the same ratio: what is left is the noise of repetitions."""
