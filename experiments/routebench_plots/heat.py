@@ -51,7 +51,7 @@ def draw(
     def words(row: int, column: int) -> list[str]:
         found = ratio(row, column)
         if found is not None:
-            return [_ratio_text(found)]
+            return [ratio_text(found)]
         slot = slots[row][column]
         return [ABSENT] if slot.valid else outcome_words(slot)
 
@@ -83,7 +83,7 @@ def draw(
     )
 
 
-def _ratio_text(ratio: float) -> str:
+def ratio_text(ratio: float) -> str:
     """Three digits; never 1 for what is not the best."""
     if ratio == 1:
         return "1"
