@@ -233,6 +233,8 @@ def draw(results: Results, metric: Metric, sweep: Sweep, title: str) -> Sheet:
             axes.add_line(line)
         axes.grid(True)
         set_range(axes, "y", everything, _LOG_TOTALS_FROM)
+        for flip in (f for f in found if f.group is group):
+            _mark_crossing(axes, sweep, flip, scale)
         if group.label:
             axes.set_title(wrapped(group.label, panel_width - 0.6, TEXT_SIZE))
     for row in grid:
@@ -250,6 +252,42 @@ def _line(
         [scale(sweep.totals[s.row_id, contender.row_id]) for s in group.settings],
     )
     return line
+
+
+def _mark_crossing(axes: Axes, sweep: Sweep, flip: Flip, scale: Scale) -> None:
+    """A ring where the two lines meet, on the axes as they are by now."""
+    settings = flip.group.settings
+
+    def point(place: int, contender: Item) -> tuple[float, float]:
+        total = sweep.totals[settings[place].row_id, contender.row_id]
+        return _position(sweep, flip.group, place), scale(total)
+
+    if flip.after > flip.before + 1:
+        meeting = point(flip.before + 1, flip.winner)  # a tie
+    else:
+        to_paper = axes.transScale
+        (x0, one0), (x1, one1), (_, other0), (_, other1) = to_paper.transform(
+            [
+                point(place, contender)
+                for contender in (flip.winner, flip.loser)
+                for place in (flip.before, flip.after)
+            ]
+        )
+        share = (one0 - other0) / ((one0 - other0) - (one1 - other1))
+        on_paper = (x0 + share * (x1 - x0), one0 + share * (one1 - one0))
+        meeting = to_paper.inverted().transform(on_paper)
+    axes.plot(
+        [meeting[0]],
+        [meeting[1]],
+        linestyle="none",
+        marker="o",
+        markersize=9,
+        markerfacecolor="none",
+        markeredgecolor="black",
+        markeredgewidth=0.9,
+        zorder=5,
+        gid="flip",
+    )
 
 
 def _position(sweep: Sweep, group: Group, place: int) -> float:
@@ -295,7 +333,7 @@ def _notes(results: Results, sweep: Sweep, found: Sequence[Flip]) -> list[str]:
         "valid under every setting."
     ]
     if found:
-        notes.append("Shaded: the order of two contenders turns round.")
+        notes.append("Shaded and ringed: the order of two contenders turns round.")
         notes += [f"{flip_text(sweep, flip)}." for flip in found[:_MOST_FLIPS]]
         if len(found) > _MOST_FLIPS:
             notes.append(f"{counted(len(found) - _MOST_FLIPS, 'more flip')}: see summary.md.")

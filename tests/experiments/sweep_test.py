@@ -120,9 +120,15 @@ class SweepTest(PlotTestCase):
         sheet = self.draw(self.make(CROSSING))
         length, manhattan = visible_axes(sheet)
         self.assertEqual(
-            [list(zip(*line.get_data())) for line in length.lines],
+            [
+                list(zip(*line.get_data()))
+                for line in length.lines
+                if line.get_gid() != "flip"
+            ],
             [[(1, 10), (2, 10), (9, 9)], [(1, 20), (2, 10), (9, 4)]],
         )
+        (ring,) = [line for line in length.lines if line.get_gid() == "flip"]
+        self.assertEqual(tuple(ring.get_xydata()[0]), (2, 10), "they tie there")
         (band,) = length.patches
         self.assertEqual(
             (band.get_xy()[:, 0].min(), band.get_xy()[:, 0].max()), (1, 9)
@@ -131,6 +137,15 @@ class SweepTest(PlotTestCase):
         self.assertIn("b overtakes a between", note(sheet))
         self.assertIn("24 of 24 cells shown", note(sheet))
         self.assert_laid_out(sheet)
+
+    def test_rings_stand_where_lines_meet(self) -> None:
+        """Half-way on an axis of policies, for 1 to 3 meets 3 to 1."""
+        sheet = self.draw(
+            self.make({("length", 1.0): {"a": 4, "b": 6}, ("manhattan", 1.0): {"a": 6, "b": 4}})
+        )
+        (axes,) = visible_axes(sheet)
+        (ring,) = [line for line in axes.lines if line.get_gid() == "flip"]
+        self.assertEqual(tuple(ring.get_xydata()[0]), (0.5, 5.0))
 
     def test_long_names_fit(self) -> None:
         names = {f"{LONG_NAME} {n}": 10.0 * n + 5 for n in range(5)}
