@@ -190,10 +190,12 @@ def to_latex(made: Summary) -> str:
 
 
 def _latex_cells(contender: str, made: Comparison | None) -> list[str]:
+    # Braces, for after a line's end a bracket would be an argument.
+    name = "{}" + latex_name(contender)
     if made is None:
-        return [latex_name(contender), "--", "--", "--", "--"]
+        return [name, "--", "--", "--", "--"]
     return [
-        latex_name(contender),
+        name,
         interval_text(made),
         f"{made.ratio:.3g}",
         f"{made.worse} of {made.shared}",
