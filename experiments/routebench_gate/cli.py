@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from routebench_plots.console import EXIT_DONE, Parser, guarded
+from routebench_plots.console import EXIT_DONE, Parser, guarded, write_out
 from routebench_plots.errors import PlotError
 from routebench_plots.results import Results, find_database
 
@@ -31,9 +30,7 @@ def _run(arguments: Sequence[str] | None) -> int:
         limits = _limits(options, old, new)
         made = compare(old, new, metrics, limits, options.times)
         page = to_markdown(made, old, new, options.require_all)
-    # What a terminal cannot show is no reason to fail.
-    sys.stdout.reconfigure(encoding="utf-8")  # type: ignore[union-attr]
-    print(page, end="")
+    write_out(page.encode())
     return EXIT_REGRESSION if regressions(made, options.require_all) else EXIT_DONE
 
 

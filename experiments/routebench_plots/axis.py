@@ -97,7 +97,8 @@ def ratio_ticks(axes: Axes, low: float, high: float) -> None:
         axes.xaxis.set_major_locator(MaxNLocator(nbins=4, steps=[1, 2, 5, 10]))
     else:
         decades = range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)
-        ticks = [s * 10.0**d for d in decades for s in (1.0, 2.0, 5.0) if low <= s * 10.0**d <= high]
+        round_ones = [s * 10.0**d for d in decades for s in (1.0, 2.0, 5.0)]
+        ticks = [tick for tick in round_ones if low <= tick <= high]
         if len(ticks) > 5:
             tens = [t for t in ticks if math.isclose(math.log10(t), round(math.log10(t)))]
             ticks = tens[:: -(-len(tens) // 5)] if len(tens) > 1 else ticks[::2]

@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
-from .console import EXIT_DONE, Parser, guarded
+from .console import EXIT_DONE, Parser, guarded, write_out
 from .errors import PlotError
 from .figures import chosen_metrics, draw_all
 from .results import Results, find_database
@@ -27,21 +27,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Plots, prints the files written, and returns the exit code."""
 
     def work() -> int:
-        _print_paths(_run(arguments))
+        # One a line, byte for byte as the system has them.
+        write_out(b"".join(os.fsencode(path) + b"\n" for path in _run(arguments)))
         return EXIT_DONE
 
     return guarded(work, "interrupted, nothing written")
-
-
-def _print_paths(paths: Sequence[Path]) -> None:
-    """One a line, byte for byte as the system has them."""
-    try:
-        for path in paths:
-            sys.stdout.buffer.write(os.fsencode(path) + b"\n")
-        sys.stdout.flush()
-    except BrokenPipeError:
-        # Whoever asked has read enough; Python would complain at its end.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _run(arguments: Sequence[str] | None) -> list[Path]:

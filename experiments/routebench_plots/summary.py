@@ -7,7 +7,6 @@ ones, and the page says on how many models each figure rests.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from . import scaling, sweep

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import io
-import json
 import os
 import random
 import sqlite3
@@ -127,7 +126,7 @@ class GateTest(PlotTestCase):
         self.assertEqual(code, 1)
 
     def test_directions(self) -> None:
-        """Less travel is better, less coverage is worse; what has no direction counts for nothing."""
+        """Less travel is better, less coverage is worse; without a direction nothing counts."""
         old = self.make("old")
         for metric, factor, expected in (
             ("travel_mm", 0.9, 0),
@@ -283,7 +282,7 @@ class GateCommandTest(unittest.TestCase):
                     'name = "small"\nmodels = ["shape:box?size=10&z=1"]\n'
                     "[run]\nrepetitions = 2\n"
                     '[[contender]]\nname = "lines"\nshell = { planner = "greedy_shell" }\n'
-                    f"fill = {{ planner = {json.dumps('rectilinear')}, link = {json.dumps(link)} }}\n"
+                    f'fill = {{ planner = "rectilinear", link = "{link}" }}\n'
                 )
                 subprocess.run(
                     [program, "run", config, "--out", folder / run],

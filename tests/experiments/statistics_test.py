@@ -17,8 +17,8 @@ except ImportError:
 needs_scipy = unittest.skipIf(scipy_stats is None, "python3-scipy is not installed")
 
 # Accuracy of C4.5 and three of its variants on 14 data sets: J. Demšar, Statistical comparisons of
-# classifiers over multiple data sets, JMLR 7, 2006, table 6. On the last but one the printed numbers
-# of the last two tie at .975, but his ranks put the former first.
+# classifiers over multiple data sets, JMLR 7, 2006, table 6. On the last but one the printed
+# numbers of the last two tie at .975, but his ranks put the former first.
 DEMSAR = {
     "C4.5": (.763, .599, .954, .628, .882, .936, .661, .583, .775, 1.0, .940, .619, .972, .957),
     "C4.5+m": (.768, .591, .971, .661, .888, .931, .668, .583, .838, 1.0, .962, .666, .981, .978),
@@ -164,7 +164,8 @@ class RankTest(unittest.TestCase):
             self.assertAlmostEqual(rank, expected, delta=0.0006)
         # He takes the formula without the correction for ties.
         k, n = 4, 14
-        plain = 12 * n / (k * (k + 1)) * (sum(r * r for r in found.mean_ranks) - k * (k + 1) ** 2 / 4)
+        squares = sum(rank * rank for rank in found.mean_ranks)
+        plain = 12 * n / (k * (k + 1)) * (squares - k * (k + 1) ** 2 / 4)
         self.assertAlmostEqual(plain, 9.28, delta=0.01)
         self.assertGreater(found.chi_squared, plain)
         # He computes with the rounded quantile 2.569.
