@@ -11,6 +11,7 @@ from matplotlib.ticker import PercentFormatter
 
 from .axis import ratio_ticks
 from .comparison import SHIFT, Comparisons
+from .curves import curve
 from .inference import performance_ratios, profile
 from .quantities import counted
 from .results import Item, Metric, Results
@@ -49,8 +50,7 @@ def draw(results: Results, setting: Item, metrics: Sequence[Metric], title: str)
         ],
     )
     panel_width = sheet.body.width / columns
-    grid = sheet.panels(rows, columns, share_y=True)
-    panels = [axes for row in grid for axes in row]
+    panels = sheet.row_by_row(len(metrics), columns)
     for axes, metric in zip(panels, metrics):
         pairs = Comparisons(results, setting, metric)
         costs = {
@@ -60,10 +60,8 @@ def draw(results: Results, setting: Item, metrics: Sequence[Metric], title: str)
         _draw_panel(axes, results.contenders, performance_ratios(costs, SHIFT), contender_looks)
         axes.set_title(wrapped(metric.label, panel_width - 0.2, TEXT_SIZE))
         axes.set_xlabel(wrapped("Factor above the least", panel_width - 0.3, TEXT_SIZE))
-    for row in grid:
-        row[0].set_ylabel("Share of models")
-    for axes in panels[len(metrics) :]:
-        axes.set_visible(False)
+    for axes in panels[::columns]:
+        axes.set_ylabel("Share of models")
     return sheet
 
 
@@ -93,15 +91,6 @@ def _draw_panel(
 
 
 def _stairs(look: Look) -> Line2D:
-    return Line2D(
-        [],
-        [],
-        drawstyle="steps-post",
-        color=look.colour,
-        linestyle=(0, look.dashes) if look.dashes else "-",
-        linewidth=1.2,
-        marker=look.marker,
-        markersize=3.5,
-        markeredgecolor="white",
-        markeredgewidth=0.3,
-    )
+    line = curve(look)
+    line.set_drawstyle("steps-post")
+    return line

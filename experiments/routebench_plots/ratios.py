@@ -48,13 +48,9 @@ def draw(
         notes=_notes(results, setting, compared, baseline),
     )
     panel_width = room / columns
-    grid = sheet.panels(rows, columns, share_y=True)
-    panels = [axes for row in grid for axes in row]
-    for axes, pairs in zip(panels, compared):
+    for axes, pairs in zip(sheet.row_by_row(len(metrics), columns), compared):
         _draw_panel(axes, contenders, pairs, baseline, panel_width)
         axes.set_yticks(range(len(contenders)), ["\n".join(lines) for lines in names])
-    for axes in panels[len(metrics) :]:
-        axes.set_visible(False)
     return sheet
 
 

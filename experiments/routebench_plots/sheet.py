@@ -154,6 +154,14 @@ class Sheet:
         )
         return [list(row) for row in axes]
 
+    def row_by_row(self, count: int, columns: int) -> list[Axes]:
+        """So many panels, their y axes shared in a row; places left over stay empty."""
+        grid = self.panels(-(-count // columns), columns, share_y=True)
+        axes = [one for row in grid for one in row]
+        for one in axes[count:]:
+            one.set_visible(False)
+        return axes[:count]
+
     def axes_at(self, place: Rect) -> Axes:
         """Axes at a place given in inches from the lower left corner."""
         return self.figure.add_axes(

@@ -215,8 +215,7 @@ def draw(results: Results, metric: Metric, sweep: Sweep, title: str) -> Sheet:
         ],
     )
     panel_width = (width - 2 * MARGIN) / columns
-    grid = sheet.panels(rows, columns, share_y=True)
-    panels = [axes for row in grid for axes in row]
+    panels = sheet.row_by_row(len(sweep.groups), columns)
     everything = [scale(v) for v in sweep.totals.values()]
     for axes, group in zip(panels, sweep.groups):
         _set_key_axis(axes, sweep, group, panel_width)
@@ -237,10 +236,8 @@ def draw(results: Results, metric: Metric, sweep: Sweep, title: str) -> Sheet:
             _mark_crossing(axes, sweep, flip, scale)
         if group.label:
             axes.set_title(wrapped(group.label, panel_width - 0.6, TEXT_SIZE))
-    for row in grid:
-        row[0].set_ylabel(axis_label(metric, scale, _PANEL_HEIGHT - 0.7))
-    for axes in panels[len(sweep.groups) :]:
-        axes.set_visible(False)
+    for axes in panels[::columns]:
+        axes.set_ylabel(axis_label(metric, scale, _PANEL_HEIGHT - 0.7))
     return sheet
 
 
