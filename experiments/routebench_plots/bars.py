@@ -129,9 +129,7 @@ def draw(
         title=title,
         notes=_notes(results, setting, metric, values, tally),
     )
-    grid = sheet.panels(rows, columns, share_y=True)
-    panels = [axes for row in grid for axes in row]
-    for axes, model in zip(panels, models):
+    for axes, model in zip(sheet.row_by_row(len(models), columns), models):
         _draw_panel(
             axes,
             results.contenders,
@@ -144,8 +142,6 @@ def draw(
         axes.set_title(
             wrapped(model.label, layout.panel_width - 0.1, TEXT_SIZE)
         )
-    for axes in panels[len(models) :]:
-        axes.set_visible(False)
     return sheet
 
 

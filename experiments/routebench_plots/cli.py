@@ -5,66 +5,33 @@ from __future__ import annotations
 import argparse
 import os
 import shutil
-import signal
 import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import NoReturn
 
+from .console import EXIT_DONE, Parser, guarded, write_out
 from .errors import PlotError
 from .figures import chosen_metrics, draw_all
-from .naming import printable
 from .results import Results, find_database
 from .sheet import FORMATS
 
-EXIT_DONE = 0
-EXIT_BAD_INPUT = 2
-EXIT_INTERNAL = 3
-EXIT_INTERRUPTED = 128 + signal.SIGINT
 _DEFAULT_FORMATS = "png,svg"
 _INDEX = ".routebench-plots"
 """Names of the files of the last time, so that none of them goes stale."""
 
 
-class _Parser(argparse.ArgumentParser):
-    def error(self, message: str) -> NoReturn:
-        raise PlotError(f"{message} (see routebench plot --help)")
-
-
 def main(arguments: Sequence[str] | None = None) -> int:
     """Plots, prints the files written, and returns the exit code."""
-    signal.signal(signal.SIGTERM, _exit_on_signal)
-    try:
-        paths = _run(arguments)
-    except PlotError as error:
-        return _complain(str(error), EXIT_BAD_INPUT)
-    except OSError as error:
-        return _complain(f"{error.filename}: {error.strerror}", EXIT_BAD_INPUT)
-    except KeyboardInterrupt:
-        return _complain("interrupted, nothing written", EXIT_INTERRUPTED)
-    except Exception as error:  # the last resort: still one line
-        return _complain(f"internal error: {error!r}", EXIT_INTERNAL)
-    _print_paths(paths)
-    return EXIT_DONE
 
+    def work() -> int:
+        # One a line, byte for byte as the system has them.
+        write_out(b"".join(os.fsencode(path) + b"\n" for path in _run(arguments)))
+        return EXIT_DONE
 
-def _complain(message: str, exit_code: int) -> int:
-    print(f"routebench: {printable(message)}", file=sys.stderr)
-    return exit_code
-
-
-def _print_paths(paths: Sequence[Path]) -> None:
-    """One a line, byte for byte as the system has them."""
-    try:
-        for path in paths:
-            sys.stdout.buffer.write(os.fsencode(path) + b"\n")
-        sys.stdout.flush()
-    except BrokenPipeError:
-        # Whoever asked has read enough; Python would complain at its end.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    return guarded(work, "interrupted, nothing written")
 
 
 def _run(arguments: Sequence[str] | None) -> list[Path]:
@@ -84,7 +51,7 @@ def _run(arguments: Sequence[str] | None) -> list[Path]:
 
 
 def _parse(arguments: Sequence[str] | None) -> argparse.Namespace:
-    parser = _Parser(prog="routebench plot", description=__doc__)
+    parser = Parser(prog="routebench plot", description=__doc__)
     parser.add_argument("results", type=Path)
     parser.add_argument("--out", type=Path)
     parser.add_argument("--formats", default=_DEFAULT_FORMATS)
@@ -156,8 +123,3 @@ def _publish(folder: Path, out: Path, written: Sequence[str]) -> None:
         if Path(name).name == name:
             (out / name).unlink(missing_ok=True)
     index.write_text("\n".join(written) + "\n", encoding="utf-8")
-
-
-def _exit_on_signal(number: int, _: object) -> NoReturn:
-    """Lets `finally` run: nothing half-written stays behind."""
-    sys.exit(128 + number)

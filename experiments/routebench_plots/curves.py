@@ -65,7 +65,7 @@ def draw(
         notes=[*notes, tally.sentence()],
         legend=[
             LegendEntry(
-                _curve(contender_looks[contender.row_id]), contender.label
+                curve(contender_looks[contender.row_id]), contender.label
             )
             for contender in results.contenders
             if contender.row_id in rows
@@ -94,20 +94,20 @@ def _draw_metric(
         for row_id, found in rows.items()
         if metric.name in found.columns
     }
-    values = [v for curve in curves.values() for v in curve if v == v]
+    values = [v for column in curves.values() for v in column if v == v]
     scale = scale_for(metric, values)
     contender_looks = looks(contenders)
     for place, contender in enumerate(contenders):
         if contender.row_id not in curves:
             continue
         heights = rows[contender.row_id].z_mm
-        curve = _curve(contender_looks[contender.row_id])
-        curve.set_data(heights, [scale(v) for v in curves[contender.row_id]])
+        line = curve(contender_looks[contender.row_id])
+        line.set_data(heights, [scale(v) for v in curves[contender.row_id]])
         step = max(1, len(heights) // _MARKERS)
         # Markers of curves that coincide stand side by side.
         shift = place * step // len(contenders)
-        curve.set_markevery((min(shift, len(heights) - 1), step))
-        axes.add_line(curve)
+        line.set_markevery((min(shift, len(heights) - 1), step))
+        axes.add_line(line)
     axes.autoscale_view()
     low, high = min(values, default=0.0), max(values, default=0.0)
     low, high = scale(min(low, 0.0)), scale(high)
@@ -120,7 +120,8 @@ def _draw_metric(
     )
 
 
-def _curve(look: Look) -> Line2D:
+def curve(look: Look) -> Line2D:
+    """An empty line with the contender's colour, dashes and markers."""
     return Line2D(
         [],
         [],

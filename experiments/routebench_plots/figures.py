@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -11,17 +10,24 @@ from pathlib import Path
 from . import (
     bars,
     curves,
+    heat,
     outcomes,
+    profiles,
+    ranks,
+    ratios,
     routes,
     scaling,
     scatter,
     summary,
+    sweep,
     tables,
 )
+from .comparison import baseline_of, compared_metrics
 from .errors import PlotError
-from .naming import file_slugs
+from .matrix import MODELS_PER_PAGE
+from .naming import file_slugs, nearest
 from .quantities import in_sentence
-from .results import Item, Metric, Results
+from .results import TIMED_METRICS, Item, Metric, Results
 from .sheet import Sheet
 from .style import applied
 
@@ -41,7 +47,6 @@ METRICS_OF_INTEREST = (
 _CURVES = ("travel_mm", "retractions")
 _RUNTIME = scaling.TIME
 _COST = "travel_mm"
-_MODELS_PER_MATRIX = 30
 
 
 @dataclass(frozen=True)
@@ -74,19 +79,21 @@ def chosen_metrics(
         metric = results.metric(name)
         if metric is None:
             known = [m.name for m in results.metrics]
-            near = difflib.get_close_matches(name, known, n=1)
-            hint = (
-                f"did you mean '{near[0]}'?"
-                if near
-                else f"it has {', '.join(known)}"
+            raise PlotError(
+                f"{results.database}: no metric '{name}'{nearest(name, known)}"
             )
-            raise PlotError(f"{results.database}: no metric '{name}'; {hint}")
         chosen.append(metric)
     return chosen
 
 
-def figures(results: Results, metrics: Sequence[Metric]) -> Iterator[Figure]:
-    """All figures; the outcome matrices come first."""
+def figures(
+    results: Results, metrics: Sequence[Metric], baseline: str | None = None
+) -> Iterator[Figure]:
+    """All figures; the outcome matrices come first.
+
+    What settings of the printer alone cannot change is drawn for the first
+    of them.
+    """
     models = file_slugs([model.label for model in results.models])
     settings = file_slugs([setting.label for setting in results.settings])
     plain = len(results.settings) == 1 and not results.settings[0].label
@@ -94,15 +101,84 @@ def figures(results: Results, metrics: Sequence[Metric]) -> Iterator[Figure]:
         setting.row_id: "" if plain else f"--{settings[setting.label]}"
         for setting in results.settings
     }
+    shown: set[object] = set()
     for setting in results.settings:
-        yield from _outcome_figures(results, setting, suffixes[setting.row_id])
+        if _is_new(results, setting, None, shown):
+            suffix = suffixes[setting.row_id]
+            yield from _outcome_figures(results, setting, suffix)
+    yield from _sweep_figures(results)
+    swept = sweep.find(results) is not None
+    drawn: set[object] = set()
     for setting in results.settings:
         suffix = suffixes[setting.row_id]
-        yield from _metric_figures(results, setting, metrics, suffix)
+        again = _plans_again(results, setting)
+        fresh = [
+            metric
+            for metric in metrics
+            if not (again and metric.name in TIMED_METRICS)
+            and _is_new(results, setting, metric, drawn)
+        ]
+        yield from _comparison_figures(
+            results,
+            setting,
+            compared_metrics(results, fresh),
+            baseline_of(results, setting, baseline),
+            suffix,
+        )
+        yield from _metric_figures(results, setting, fresh, suffix)
         for model in results.models:
-            yield from _model_figures(
-                results, setting, model, models[model.label], suffix
+            slug = models[model.label]
+            if not (again and swept):
+                yield from _curve_figures(
+                    results, setting, model, slug, suffix
+                )
+            if not again:
+                yield from _route_figures(
+                    results, setting, model, slug, suffix
+                )
+
+
+def _plans_again(results: Results, setting: Item) -> bool:
+    """Whether an earlier setting differs in the printer alone.
+
+    Planners do not see the printer: routes and planning are the same.
+    """
+    task, printer = results.task(setting), results.printer(setting)
+    first = next(s for s in results.settings if results.task(s) == task)
+    return results.printer(first) != printer
+
+
+def _is_new(
+    results: Results,
+    setting: Item,
+    metric: Metric | None,
+    drawn: set[object],
+) -> bool:
+    """Whether a figure of the metric's totals (of the outcomes, if none) is due.
+
+    It is not if a setting that differs in the printer alone has all the
+    same in `drawn`, which is kept up.
+    """
+    slots = [
+        results.slot(setting, model, contender)
+        for model in results.models
+        for contender in results.contenders
+    ]
+    shown = (
+        metric,
+        repr(results.task(setting)),
+        tuple(
+            (
+                tuple((c.outcome, c.reason) for c in slot.cells),
+                None if metric is None else results.value(slot, metric),
             )
+            for slot in slots
+        ),
+    )
+    if shown in drawn and _plans_again(results, setting):
+        return False
+    drawn.add(shown)
+    return True
 
 
 def draw_all(
@@ -121,7 +197,7 @@ def draw_all(
     compared = summary.summary(results, baseline)
     written = []
     with applied():
-        planned = list(figures(results, metrics))
+        planned = list(figures(results, metrics, baseline))
         for done, figure in enumerate(planned, start=1):
             figure.draw().save(folder, figure.stem, formats)
             written += [f"{figure.stem}.{ending}" for ending in formats]
@@ -134,6 +210,7 @@ def draw_all(
             tables.to_markdown(made, f"Totals of {results.experiment}"),
         ),
         ("table.tex", tables.to_latex(made)),
+        ("comparison.tex", summary.to_latex(compared)),
     ):
         (folder / name).write_text(text, encoding="utf-8")
         written.append(name)
@@ -162,13 +239,64 @@ def _paged(
 def _outcome_figures(
     results: Results, setting: Item, suffix: str
 ) -> Iterator[Figure]:
-    pages = _paged("outcomes", suffix, results.models, _MODELS_PER_MATRIX)
+    pages = _paged("outcomes", suffix, results.models, MODELS_PER_PAGE)
     words = f"Outcomes of {results.experiment}"
     for number, (stem, models) in enumerate(pages):
         title = _titled(words, setting, number, len(pages))
         yield Figure(
             stem, partial(outcomes.draw, results, setting, models, title)
         )
+
+
+def _sweep_figures(results: Results) -> Iterator[Figure]:
+    """Of the printer's retraction policy, if the settings are such a sweep."""
+    found, metric = sweep.find(results), results.metric(sweep.METRIC)
+    if found is not None and metric is not None:
+        title = f"{metric.label} of {results.experiment} by policy"
+        yield Figure(
+            "retraction-sweep",
+            partial(sweep.draw, results, metric, found, title),
+        )
+
+
+def _comparison_figures(
+    results: Results,
+    setting: Item,
+    metrics: Sequence[Metric],
+    baseline: Item,
+    suffix: str,
+) -> Iterator[Figure]:
+    """What all models say together; nothing to compare, no figure."""
+    if not metrics or len(results.contenders) < 2:
+        return
+    title = _titled(f"Ratios to {baseline.label}", setting)
+    yield Figure(
+        f"ratios{suffix}",
+        partial(ratios.draw, results, setting, metrics, baseline, title),
+    )
+    title = _titled("Performance profiles", setting)
+    yield Figure(
+        f"profiles{suffix}",
+        partial(profiles.draw, results, setting, metrics, title),
+    )
+    ranked = ranks.rankings(results, setting, metrics)
+    if ranked:
+        title = _titled("Mean ranks", setting)
+        yield Figure(
+            f"ranks{suffix}",
+            partial(ranks.draw, results, setting, ranked, title),
+        )
+    for metric in metrics:
+        pages = _paged(
+            f"heat-{metric.name}", suffix, results.models, MODELS_PER_PAGE
+        )
+        words = f"{metric.label} as a multiple of the best"
+        for number, (stem, models) in enumerate(pages):
+            title = _titled(words, setting, number, len(pages))
+            yield Figure(
+                stem,
+                partial(heat.draw, results, setting, metric, models, title),
+            )
 
 
 def _metric_figures(
@@ -185,6 +313,8 @@ def _metric_figures(
                 stem,
                 partial(bars.draw, results, setting, metric, models, title),
             )
+    if _plans_again(results, setting):
+        return
     cost, runtime = results.metric(_COST), results.metric(_RUNTIME)
     if cost is not None and runtime is not None:
         words = f"{cost.label} against {in_sentence(runtime.label)}"
@@ -219,7 +349,7 @@ def _metric_figures(
         )
 
 
-def _model_figures(
+def _curve_figures(
     results: Results, setting: Item, model: Item, slug: str, suffix: str
 ) -> Iterator[Figure]:
     metrics = [
@@ -233,6 +363,11 @@ def _model_figures(
             f"layers-{slug}{suffix}",
             partial(curves.draw, results, setting, model, metrics, title),
         )
+
+
+def _route_figures(
+    results: Results, setting: Item, model: Item, slug: str, suffix: str
+) -> Iterator[Figure]:
     for index, z_mm in results.kept_layers(setting, model):
         title = _titled(
             f"Layer {index} of {model.label}, z = {z_mm:.6g} mm", setting

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import hashlib
 import re
 import unicodedata
@@ -42,6 +43,14 @@ def printable(text: str) -> str:
             for char in text
         ).split()
     )
+
+
+def nearest(name: str, known: Sequence[str]) -> str:
+    """The end of a message about an unknown name: what was meant, or what there is."""
+    near = difflib.get_close_matches(name, known, n=1)
+    if near:
+        return f"; did you mean '{near[0]}'?"
+    return f"; it has {', '.join(known)}"
 
 
 def file_slugs(labels: Sequence[str]) -> dict[str, str]:

@@ -135,7 +135,8 @@ class Results:
             self.settings = self._read_items("setting", "label, setting_hash")
             self._scores = self._read_scores()
             self._samples = self._read_samples()
-            self._tasks = self._read_tasks()
+            self._tasks = self._read_json_of_settings("task")
+            self._printers = self._read_json_of_settings("printer")
             self._layer_columns = frozenset(
                 row[1] for row in self._query("PRAGMA table_info(layer_score)")
             )
@@ -170,18 +171,23 @@ class Results:
         Times are taken from their repetitions, everything else from the
         cells' totals.
         """
-        found: list[float] = []
-        for cell in slot.valid:
-            samples = self._samples.get((cell.cell_id, metric.name))
-            if samples:
-                found += samples
-            elif (cell.cell_id, metric.name) in self._scores:
-                found.append(self._scores[cell.cell_id, metric.name])
+        found = [v for one in self.samples(slot, metric) for v in one]
         if not found:
             return None
         return Value(
             statistics.median(found), min(found), max(found), len(found)
         )
+
+    def samples(self, slot: Slot, metric: Metric) -> list[list[float]]:
+        """What the value is made of: repetitions for each valid cell."""
+        found = []
+        for cell in slot.valid:
+            samples = self._samples.get((cell.cell_id, metric.name))
+            if samples:
+                found.append(samples)
+            elif (cell.cell_id, metric.name) in self._scores:
+                found.append([self._scores[cell.cell_id, metric.name]])
+        return found
 
     def all_values(self, setting: Item, metric: Metric) -> list[Value]:
         """The metric of every slot of a setting that has it."""
@@ -201,9 +207,31 @@ class Results:
         """Whether any valid cell has this metric."""
         return any(self.all_values(s, metric) for s in self.settings)
 
+    def last_run(self) -> dict[str, Any]:
+        """The row of the run whose cells these are: where, when and with what it ran."""
+        names = [row[1] for row in self._query("PRAGMA table_info(run)")]
+        rows = self._query("SELECT * FROM run ORDER BY run_id DESC LIMIT 1")
+        return dict(zip(names, rows[0])) if rows else {}
+
+    def mesh_hash(self, setting: Item, model: Item) -> str:
+        """Equal for equal meshes; empty where the setting lacks the model."""
+        rows = self._query(
+            "SELECT mesh_hash FROM model WHERE model_id = ?",
+            (self._model_rows.get((setting.row_id, model.row_id)),),
+        )
+        return str(rows[0][0]) if rows else ""
+
     def task_number(self, setting: Item, key: str) -> float | None:
         """A number that the setting's task has under `key`, if any."""
         return _number(self._tasks[setting.row_id].get(key))
+
+    def task(self, setting: Item) -> dict[str, Any]:
+        """The keys of the setting's [task]."""
+        return self._tasks[setting.row_id]
+
+    def printer(self, setting: Item) -> dict[str, Any]:
+        """The keys of the setting's [printer]."""
+        return self._printers[setting.row_id]
 
     def layer_rows(self, cell: Cell, metrics: Sequence[Metric]) -> LayerRows:
         """The scores of the cell's layers, upwards."""
@@ -389,20 +417,21 @@ class Results:
                     samples[cell_id, metric].append(number)
         return samples
 
-    def _read_tasks(self) -> dict[int, dict[str, Any]]:
-        tasks = {}
+    def _read_json_of_settings(self, table: str) -> dict[int, dict[str, Any]]:
+        """The config's table of that name as each setting has it."""
+        found = {}
         for setting_id, text in self._query(
-            "SELECT setting_id, task_json FROM setting"
+            f"SELECT setting_id, {table}_json FROM setting"
         ):
             try:
-                task = json.loads(text)
+                keys = json.loads(text)
             except (TypeError, ValueError) as error:
                 raise PlotError(
-                    f"{self.database}: task of setting {setting_id} is not "
-                    f"JSON: {error}"
+                    f"{self.database}: {table} of setting {setting_id} is "
+                    f"not JSON: {error}"
                 ) from error
-            tasks[setting_id] = task if isinstance(task, dict) else {}
-        return tasks
+            found[setting_id] = keys if isinstance(keys, dict) else {}
+        return found
 
 
 def _open(database: Path) -> sqlite3.Connection:

@@ -11,6 +11,8 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator, NullLocator
 
 from .axis import axis_label, format_ticks
+from .distributions import student_quantile
+from .inference import CONFIDENCE
 from .quantities import Scale, scale_for
 from .results import Item, Metric, Results
 from .sheet import LegendEntry, Sheet
@@ -25,15 +27,6 @@ LEAST_RANGE = 10.0
 
 _WIDTH = 5.2
 _HEIGHT = 3.4
-
-# Two-sided 95 % quantiles of Student's distribution for 1, 2, ... degrees of
-# freedom; the normal one beyond.
-_STUDENT = (
-    12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228,
-    2.201, 2.179, 2.160, 2.145, 2.131, 2.120, 2.110, 2.101, 2.093, 2.086,
-    2.080, 2.074, 2.069, 2.064, 2.060, 2.056, 2.052, 2.048, 2.045, 2.042,
-)  # fmt: skip
-_NORMAL = 1.960
 
 
 @dataclass(frozen=True)
@@ -64,9 +57,7 @@ def fit(points: Sequence[tuple[float, float]]) -> Fit | None:
     half = math.nan
     if n > 2:
         freedom = n - 2
-        quantile = (
-            _STUDENT[freedom - 1] if freedom <= len(_STUDENT) else _NORMAL
-        )
+        quantile = student_quantile((1 + CONFIDENCE) / 2, freedom)
         half = quantile * math.sqrt(errors / freedom / spread)
     return Fit(slope, half, math.exp(base), n)
 

@@ -2,28 +2,21 @@
 
 from __future__ import annotations
 
-import math
 import statistics
 from collections.abc import Mapping, Sequence
 
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
-from matplotlib.ticker import LogLocator, NullLocator, SymmetricalLogLocator
 
-from .axis import axis_label, format_ticks, number_ticks
+from .axis import axis_label, set_range
 from .quantities import scale_for
 from .results import Item, Metric, Results
 from .sheet import LegendEntry, Sheet
-from .style import Look, looks
+from .style import MUTED, Look, looks
 from .tally import Tally
 
 _WIDTH = 5.2
 _HEIGHT = 3.4
-_LOG_FROM = 20.0
-"""Largest over smallest value from which on an axis is logarithmic."""
-_MANY_DECADES = 2.5
-"""From here on, an axis has numbers at the powers of ten alone."""
-
 Points = Mapping[tuple[int, int], tuple[float, float]]
 """By model and contender."""
 
@@ -35,7 +28,10 @@ def draw(
     y_metric: Metric,
     title: str,
 ) -> Sheet:
-    """A small marker for each cell, a large one for each median."""
+    """A small marker for each cell, a large one for each median.
+
+    A staircase joins the medians that no other beats on both metrics.
+    """
     tally = Tally()
     points = _points(results, setting, x_metric, y_metric, tally)
     x_scale = scale_for(x_metric, (x for x, _ in points.values()))
@@ -44,12 +40,18 @@ def draw(
         place: (x_scale(x), y_scale(y)) for place, (x, y) in points.items()
     }
     shared = _shared_models(results, points)
+    medians = _medians(results, points, shared)
+    front = pareto_front(medians, x_metric.better, y_metric.better)
     contender_looks = looks(results.contenders)
     sheet = Sheet(
         width=_WIDTH,
         body_height=_HEIGHT,
         title=title,
-        notes=[_median_note(len(shared)), tally.sentence()],
+        notes=[
+            _median_note(len(shared)),
+            *_front_note(results, front),
+            tally.sentence(),
+        ],
         legend=[
             LegendEntry(_marker(contender_looks[c.row_id]), c.label)
             for c in results.contenders
@@ -66,12 +68,13 @@ def draw(
         _draw_contender(
             axes,
             list(own.values()),
-            [own[model] for model in shared if model in own],
+            medians.get(contender.row_id),
             contender_looks[contender.row_id],
         )
+    _draw_front(axes, [medians[row_id] for row_id in front])
     axes.grid(True)
-    _set_axis(axes, "x", [x for x, _ in points.values()])
-    _set_axis(axes, "y", [y for _, y in points.values()])
+    set_range(axes, "x", [x for x, _ in points.values()])
+    set_range(axes, "y", [y for _, y in points.values()])
     axes.set_xlabel(axis_label(x_metric, x_scale, _WIDTH - 0.8))
     axes.set_ylabel(axis_label(y_metric, y_scale, _HEIGHT - 0.5))
     return sheet
@@ -112,6 +115,76 @@ def _shared_models(results: Results, points: Points) -> list[int]:
     ]
 
 
+def _medians(
+    results: Results, points: Points, shared: Sequence[int]
+) -> dict[int, tuple[float, float]]:
+    """By contender, over the shared models."""
+    medians = {}
+    for contender in results.contenders:
+        own = [
+            points[model, contender.row_id]
+            for model in shared
+            if (model, contender.row_id) in points
+        ]
+        if own:
+            medians[contender.row_id] = (
+                statistics.median(x for x, _ in own),
+                statistics.median(y for _, y in own),
+            )
+    return medians
+
+
+def pareto_front(
+    points: Mapping[int, tuple[float, float]], x_better: str, y_better: str
+) -> list[int]:
+    """Those that none is better than on one axis and as good on the other.
+
+    By rising x. Empty where an axis has no better direction.
+    """
+    signs = {"lower": 1.0, "higher": -1.0}
+    if x_better not in signs or y_better not in signs:
+        return []
+    costs = {
+        key: (signs[x_better] * x, signs[y_better] * y)
+        for key, (x, y) in points.items()
+    }
+    front = [
+        key
+        for key, (x, y) in costs.items()
+        if not any(
+            a <= x and b <= y and (a, b) != (x, y) for a, b in costs.values()
+        )
+    ]
+    return sorted(front, key=lambda key: points[key])
+
+
+def _front_note(results: Results, front: Sequence[int]) -> list[str]:
+    if len(front) < 2:
+        return []
+    names = {c.row_id: c.label for c in results.contenders}
+    return [
+        "Dashed: the Pareto front of the medians, "
+        + ", ".join(names[row_id] for row_id in front)
+        + ". No contender is better than one of these on both axes."
+    ]
+
+
+def _draw_front(axes: Axes, front: Sequence[tuple[float, float]]) -> None:
+    """What is reached with at most so much of x, so the stairs go down late."""
+    if len(front) < 2:
+        return
+    axes.plot(
+        [x for x, _ in front],
+        [y for _, y in front],
+        drawstyle="steps-post",
+        linestyle=(0, (4, 2)),
+        color=MUTED,
+        linewidth=0.9,
+        zorder=1,
+        gid="pareto",
+    )
+
+
 def _median_note(shared: int) -> str:
     note = "A small marker is one model"
     if shared:
@@ -140,7 +213,7 @@ def _marker(look: Look) -> Line2D:
 def _draw_contender(
     axes: Axes,
     points: Sequence[tuple[float, float]],
-    shared: Sequence[tuple[float, float]],
+    middle: tuple[float, float] | None,
     look: Look,
 ) -> None:
     if not points:
@@ -157,46 +230,8 @@ def _draw_contender(
         alpha=0.75,
         zorder=2,
     )
-    if shared:
+    if middle is not None:
         median = _marker(look)
-        median.set_data(
-            [statistics.median(x for x, _ in shared)],
-            [statistics.median(y for _, y in shared)],
-        )
+        median.set_data([middle[0]], [middle[1]])
         median.set_zorder(3)
         axes.add_line(median)
-
-
-def _set_axis(axes: Axes, name: str, values: Sequence[float]) -> None:
-    """Linear from zero, or logarithmic where values differ by much.
-
-    Zeros, which a logarithm has no place for, get a linear stretch of
-    their own below the smallest positive value.
-    """
-    axis = axes.xaxis if name == "x" else axes.yaxis
-    set_scale = axes.set_xscale if name == "x" else axes.set_yscale
-    set_limits = axes.set_xlim if name == "x" else axes.set_ylim
-    positive = [value for value in values if value > 0]
-    high = max(values, default=0.0)
-    if not positive or high / min(positive) < _LOG_FROM:
-        low = min(0.0, min(values, default=0.0))
-        span = (high - low) or 1.0
-        set_limits(low - 0.04 * span, high + 0.06 * span)
-        number_ticks(axis, most=6)
-    else:
-        low = min(positive)
-        decades = math.log10(high / low)
-        subs = (1.0,) if decades > _MANY_DECADES else (1.0, 2.0, 5.0)
-        if min(values) > 0:
-            set_scale("log")
-            set_limits(low / 1.6, high * 1.6)
-            axis.set_major_locator(LogLocator(subs=subs))
-        else:
-            threshold = 10.0 ** math.floor(math.log10(low))
-            set_scale("symlog", linthresh=threshold, linscale=0.5)
-            set_limits(-0.4 * threshold, high * 1.6)
-            axis.set_major_locator(
-                SymmetricalLogLocator(base=10, linthresh=threshold, subs=subs)
-            )
-        axis.set_minor_locator(NullLocator())
-        format_ticks(axis)

@@ -7,14 +7,18 @@ lies over data, however long the names are.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import io
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.backends.backend_pdf import FigureCanvasPdf
+from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
+from matplotlib.layout_engine import PlaceHolderLayoutEngine
 from matplotlib.legend import Legend
 from matplotlib.transforms import Bbox
 
@@ -33,6 +37,18 @@ _METADATA: dict[str, dict[str, str | None]] = {
     "pdf": {"CreationDate": None, "Creator": "routebench"},
 }
 FORMATS = tuple(_METADATA)
+
+_PRINT: dict[str, Callable[..., None]] = {
+    "png": lambda figure, stream, metadata: FigureCanvasAgg(figure).print_png(
+        stream, metadata=metadata
+    ),
+    "svg": lambda figure, stream, metadata: FigureCanvasSVG(figure).print_svg(
+        stream, metadata=metadata
+    ),
+    "pdf": lambda figure, stream, metadata: FigureCanvasPdf(figure).print_pdf(
+        stream, metadata=metadata
+    ),
+}
 
 
 @dataclass(frozen=True)
@@ -138,6 +154,14 @@ class Sheet:
         )
         return [list(row) for row in axes]
 
+    def row_by_row(self, count: int, columns: int) -> list[Axes]:
+        """So many panels, their y axes shared in a row; places left over stay empty."""
+        grid = self.panels(-(-count // columns), columns, share_y=True)
+        axes = [one for row in grid for one in row]
+        for one in axes[count:]:
+            one.set_visible(False)
+        return axes[:count]
+
     def axes_at(self, place: Rect) -> Axes:
         """Axes at a place given in inches from the lower left corner."""
         return self.figure.add_axes(
@@ -151,14 +175,18 @@ class Sheet:
 
     def save(self, folder: Path, stem: str, formats: Sequence[str]) -> None:
         """Writes one file for each format; equal figures, equal bytes."""
-        self._settle()
         for name in formats:
-            self.figure.savefig(
-                folder / f"{stem}.{name}",
-                format=name,
-                dpi=DPI,
-                metadata=_METADATA[name],
-            )
+            (folder / f"{stem}.{name}").write_bytes(self.encoded(name))
+
+    def encoded(self, name: str) -> bytes:
+        """The figure as the content of a file in one of FORMATS."""
+        self._settle()
+        # Not savefig, which draws everything once more before it writes.
+        stream = io.BytesIO()
+        _PRINT[name](self.figure, stream, _METADATA[name])
+        FigureCanvasAgg(self.figure)
+        self.figure.dpi = DPI
+        return stream.getvalue()
 
     def _settle(self) -> None:
         """Lays out once for all formats.
@@ -167,9 +195,10 @@ class Sheet:
         their addresses, so the last bits of its result differ from run to
         run. They are rounded away.
         """
-        if self.figure.get_layout_engine() is None:
+        engine = self.figure.get_layout_engine()
+        if engine is None or isinstance(engine, PlaceHolderLayoutEngine):
             return
-        self.figure.draw_without_rendering()
+        engine.execute(self.figure)
         self.figure.set_layout_engine("none")
         for axes in self.figure.axes:
             corners = axes.get_position(original=True).get_points()

@@ -94,6 +94,7 @@ class OutcomeLook:
     words: str
     background: str
     ink: str
+    hatch: str = ""
 
 
 _OUTCOMES = {
@@ -103,7 +104,8 @@ _OUTCOMES = {
     "crashed": OutcomeLook("crashed", "#B5450C", "#FFFFFF"),
     "timed_out": OutcomeLook("timed out", "#BFB3DC", "#000000"),
     "out_of_memory": OutcomeLook("out of memory", "#5E4B9A", "#FFFFFF"),
-    "not_installed": OutcomeLook("not installed", "#E8E8E8", "#000000"),
+    # The program behind the contender is not on that machine.
+    "not_installed": OutcomeLook("not installed", "#F2F2F2", MUTED, "....."),
     "not_run": OutcomeLook("not run", "#FFFFFF", MUTED),
 }
 OUTCOME_ORDER = tuple(_OUTCOMES)

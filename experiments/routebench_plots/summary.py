@@ -7,41 +7,30 @@ ones, and the page says on how many models each figure rests.
 
 from __future__ import annotations
 
-import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
-from . import scaling
+from . import scaling, sweep
+from .comparison import (
+    SHIFT,
+    TIME_MARGIN,
+    Comparison,
+    Comparisons,
+    Ranking,
+    baseline_of,
+    compared_metrics,
+    valid_models,
+)
 from .errors import PlotError
+from .inference import LEVEL
+from .latex import latex_name, latex_text
+from .markdown import markdown_table, markdown_text
+from .naming import nearest
 from .quantities import in_sentence
+from .ranks import friedman_text
 from .results import VALID, Item, Metric, Results
 from .style import ABSENT, outcome_look
-from .tables import markdown_row, markdown_text
 
-COMPARED = (
-    "travel_mm",
-    "retractions",
-    "strokes",
-    "print_time_s",
-    "plan_cpu_ns",
-)
-"""Metrics of the comparison; all of them are better when lower."""
-
-_SHIFT = 1.0
-"""Added to both sides of a ratio: nothing at all is good, not infinitely so.
-
-One millimetre, stroke, retraction, second or nanosecond.
-"""
-
-
-@dataclass(frozen=True)
-class Comparison:
-    """One metric of a contender against the baseline."""
-
-    ratio: float
-    """Geometric mean over the shared models."""
-    worse: int
-    shared: int
+_MOST_PAIRS = 12
 
 
 @dataclass(frozen=True)
@@ -66,6 +55,20 @@ class Miss:
 
 
 @dataclass(frozen=True)
+class Test:
+    """What holds for all contenders on one metric."""
+
+    metric: Metric
+    ranking: Ranking | None
+    pairs: int
+    """Pairs of contenders that share models."""
+    alike: list[tuple[str, str]]
+    """Those of them that are not told apart."""
+    least_p: float
+    """The smallest p-value that so many models and pairs can give."""
+
+
+@dataclass(frozen=True)
 class Part:
     """All about one setting."""
 
@@ -74,12 +77,24 @@ class Part:
     metrics: list[Metric]
     lines: list[Line]
     """The least travel first; contenders that share no model last."""
+    tests: list[Test]
+    """One a metric."""
     misses: list[Miss]
     growth: list[tuple[str, scaling.Fit]]
     """Contenders with the power law of their planning time, if any."""
 
 
-def summary(results: Results, baseline: str | None = None) -> list[Part]:
+@dataclass(frozen=True)
+class Summary:
+    """All about an experiment."""
+
+    parts: list[Part]
+    """One a setting."""
+    policy: list[str] = field(default_factory=list)
+    """What a sweep of the retraction policy shows, as Markdown."""
+
+
+def summary(results: Results, baseline: str | None = None) -> Summary:
     """Every setting's comparison.
 
     Without a name the baseline of a setting is the contender that is valid
@@ -88,25 +103,41 @@ def summary(results: Results, baseline: str | None = None) -> list[Part]:
     names = [contender.label for contender in results.contenders]
     if baseline is not None and baseline not in names:
         raise PlotError(
-            f"{results.database}: no contender '{baseline}'; it has "
-            + ", ".join(names)
+            f"{results.database}: no contender '{baseline}'"
+            + nearest(baseline, names)
         )
-    return [_part(results, setting, baseline) for setting in results.settings]
+    return Summary(
+        [_part(results, setting, baseline) for setting in results.settings],
+        _policy(results),
+    )
 
 
-def to_markdown(parts: Sequence[Part], experiment: str) -> str:
-    """The parts as a page."""
+def to_markdown(made: Summary, experiment: str) -> str:
+    """The summary as a page."""
     lines = [
         f"# What {markdown_text(experiment)} shows",
         "",
         "Each figure is a contender's total over that of the baseline on the "
         "same model, as the geometric mean over the models on which both are "
         "valid; below 1 is better. In brackets: on how many of these models "
-        "the contender is worse.",
+        f"the contender is worse. {SHIFT:.0f} (mm, s, ns, or piece) is added "
+        "to both totals, so that a total of 0 has a ratio.",
+        "",
+        "The tables below *How sure that is* give the median of these ratios "
+        "with its 95 % interval (bootstrap with the models as the sample, "
+        "for times with their repetitions drawn anew; with fewer than six "
+        "models it covers less), and the p-value of Wilcoxon's signed-rank "
+        "test over the models, corrected by Holm for all pairs of contenders. "
+        f"A difference is called one if p < {LEVEL}; of times the median must "
+        f"differ by more than {TIME_MARGIN:.0%}, too, for equal code measured "
+        "twice differs by a few percent.".replace("%,", " %,"),
     ]
-    for part in parts:
+    if made.policy:
+        lines += ["", "## Retraction policy", "", *made.policy]
+    for part in made.parts:
         lines += ["", f"## {markdown_text(part.setting or 'All models')}", ""]
         lines += _table(part)
+        lines += _certainty(part)
         if part.growth:
             lines += [
                 "",
@@ -125,29 +156,80 @@ def to_markdown(parts: Sequence[Part], experiment: str) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _part(results: Results, setting: Item, baseline: str | None) -> Part:
-    metrics = [
-        metric
-        for name in COMPARED
-        if (metric := results.metric(name)) is not None
+def to_latex(made: Summary) -> str:
+    """A booktabs table for each setting: ratios to the baseline, and how sure they are."""
+    lines = [
+        r"% Needs \usepackage{array,booktabs}. Median over the models of the",
+        "% ratio to the baseline with its 95 % bootstrap interval, geometric",
+        "% mean, models on which the contender is worse, and p of Wilcoxon's",
+        "% signed-rank test corrected by Holm for all pairs of contenders.",
     ]
-    base = (
-        max(
-            results.contenders,
-            key=lambda c: _valid_models(results, setting, c),
-        )
-        if baseline is None
-        else next(c for c in results.contenders if c.label == baseline)
-    )
+    for part in made.parts:
+        if len(part.lines) < 2:
+            continue
+        if part.setting:
+            lines.append(f"% {part.setting}")
+        lines += [
+            r"\begin{tabular}{>{\raggedright\arraybackslash}p{0.3\linewidth}rrrr}",
+            r"\toprule",
+            rf"Against {latex_name(part.baseline)} & Median [95\,\%] & Mean & Worse on & $p$ \\",
+        ]
+        for place, metric in enumerate(part.metrics):
+            lines += [
+                r"\midrule",
+                rf"\multicolumn{{5}}{{l}}{{\textit{{{latex_text(metric.label)}}}}} \\",
+            ]
+            lines += [
+                " & ".join(_latex_cells(line.contender, line.comparisons[place])) + r" \\"
+                for line in part.lines
+                if line.contender != part.baseline
+            ]
+        lines += [r"\bottomrule", r"\end{tabular}", ""]
+    return "\n".join(lines)
+
+
+def _latex_cells(contender: str, made: Comparison | None) -> list[str]:
+    # Braces, for after a line's end a bracket would be an argument.
+    name = "{}" + latex_name(contender)
+    if made is None:
+        return [name, "--", "--", "--", "--"]
+    return [
+        name,
+        interval_text(made),
+        f"{made.ratio:.3g}",
+        f"{made.worse} of {made.shared}",
+        p_value_text(made.p).replace("<", "$<$"),
+    ]
+
+
+def interval_text(made: Comparison) -> str:
+    """Median and interval."""
+    low, high = made.interval.low, made.interval.high
+    return f"{made.median:.3g} [{low:.3g}, {high:.3g}]"
+
+
+def p_value_text(p: float) -> str:
+    """A p-value in a table."""
+    return "< 0.0001" if p < 0.0001 else f"{p:.2g}"
+
+
+def verdict(made: Comparison) -> str:
+    """What the comparison amounts to, in words."""
+    if not made.differs:
+        return "no difference shown"
+    return "better" if made.median < 1 else "worse"
+
+
+def _part(results: Results, setting: Item, baseline: str | None) -> Part:
+    metrics = compared_metrics(results)
+    compared = [Comparisons(results, setting, metric) for metric in metrics]
+    base = baseline_of(results, setting, baseline)
     lines = [
         Line(
             contender=contender.label,
-            valid=_valid_models(results, setting, contender),
+            valid=valid_models(results, setting, contender),
             models=len(results.models),
-            comparisons=[
-                _compare(results, setting, contender, base, metric)
-                for metric in metrics
-            ],
+            comparisons=[pairs.compare(contender, base) for pairs in compared],
         )
         for contender in results.contenders
     ]
@@ -157,6 +239,16 @@ def _part(results: Results, setting: Item, baseline: str | None) -> Part:
         base.label,
         metrics,
         lines,
+        [
+            Test(
+                pairs.metric,
+                pairs.ranking(),
+                pairs.pairs,
+                [(a.label, b.label) for a, b in pairs.not_told_apart()],
+                pairs.least_p,
+            )
+            for pairs in compared
+        ],
         _misses(results, setting),
         _growth(results, setting),
     )
@@ -174,39 +266,6 @@ def _growth(
         for contender in results.contenders
         if contender.row_id in found
     ]
-
-
-def _valid_models(results: Results, setting: Item, contender: Item) -> int:
-    """Models on which all of the contender's cells are valid."""
-    return sum(
-        set(results.slot(setting, model, contender).outcomes) == {VALID}
-        for model in results.models
-    )
-
-
-def _compare(
-    results: Results,
-    setting: Item,
-    contender: Item,
-    base: Item,
-    metric: Metric,
-) -> Comparison | None:
-    logs = []
-    worse = 0
-    for model in results.models:
-        own, other = (
-            results.value(results.slot(setting, model, item), metric)
-            for item in (contender, base)
-        )
-        if own is None or other is None:
-            continue
-        logs.append(
-            math.log((own.median + _SHIFT) / (other.median + _SHIFT))
-        )
-        worse += own.median > other.median
-    if not logs:
-        return None
-    return Comparison(math.exp(math.fsum(logs) / len(logs)), worse, len(logs))
 
 
 def _least_first(line: Line) -> tuple[bool, float]:
@@ -227,6 +286,47 @@ def _misses(results: Results, setting: Item) -> list[Miss]:
         for cell in results.slot(setting, model, contender).cells
         if cell.outcome != VALID
     ]
+
+
+def _policy(results: Results) -> list[str]:
+    """The ranking under each policy, and where it flips."""
+    found = sweep.find(results)
+    if found is None or len(found.contenders) < 2:
+        return []
+    rows = []
+    for setting in results.settings:
+        order = sweep.ranked(found, setting)
+        rows.append(
+            [
+                markdown_text(setting.label),
+                ", ".join(
+                    f"{markdown_text(contender.label)} {total:.0f}"
+                    for contender, total in order
+                ),
+            ]
+        )
+    lines = [
+        f"Retractions over the {len(found.models)} of {len(results.models)} "
+        "models on which all these contenders are valid under every policy, "
+        "the fewest first:",
+        "",
+        *markdown_table(["policy", "ranking"], rows, left=2),
+        "",
+    ]
+    flips = [sweep.flip_text(found, flip) for flip in sweep.flips(found)]
+    flips += [
+        sweep.group_flip_text(found, flip)
+        for flip in sweep.flips_between_groups(found)
+    ]
+    if flips:
+        lines += ["The ranking flips:", ""]
+        lines += [f"- {markdown_text(flip)}" for flip in flips]
+    else:
+        lines.append("The ranking flips nowhere.")
+    if found.left_out:
+        names = ", ".join(markdown_text(c.label) for c in found.left_out)
+        lines += ["", f"Left out, valid on too few models: {names}."]
+    return lines
 
 
 def _missed(part: Part) -> list[str]:
@@ -252,19 +352,101 @@ def _missed(part: Part) -> list[str]:
 def _table(part: Part) -> list[str]:
     heads = ["contender", "valid on"]
     heads += [in_sentence(metric.label) for metric in part.metrics]
-    rows = [markdown_row([markdown_text(head) for head in heads])]
-    rows.append(markdown_row([":--", *("--:" for _ in heads[1:])]))
+    rows = []
     for line in part.lines:
         name = markdown_text(line.contender)
         if line.contender == part.baseline:
             name += " (baseline)"
-        cells = [name, f"{line.valid} of {line.models}"]
-        cells += [_comparison(c) for c in line.comparisons]
-        rows.append(markdown_row(cells))
-    return rows
+        rows.append(
+            [
+                name,
+                f"{line.valid} of {line.models}",
+                *(_comparison(c) for c in line.comparisons),
+            ]
+        )
+    return markdown_table([markdown_text(head) for head in heads], rows)
 
 
 def _comparison(made: Comparison | None) -> str:
     if made is None:
         return ABSENT
     return f"{made.ratio:.3g} ({made.worse} of {made.shared})"
+
+
+def _certainty(part: Part) -> list[str]:
+    """A table of intervals and tests for each metric; none for one contender."""
+    if len(part.lines) < 2:
+        return []
+    lines = ["", "### How sure that is"]
+    for place, test in enumerate(part.tests):
+        rows = [
+            [
+                markdown_text(line.contender),
+                str(made.shared),
+                interval_text(made),
+                f"{made.worse} of {made.shared}",
+                p_value_text(made.p),
+                verdict(made),
+            ]
+            for line in part.lines
+            if line.contender != part.baseline
+            and (made := line.comparisons[place]) is not None
+        ]
+        if not rows:
+            continue
+        lines += [
+            "",
+            f"{markdown_text(test.metric.label)}, over that of "
+            f"{markdown_text(part.baseline)}:",
+            "",
+            *markdown_table(
+                [
+                    "contender",
+                    "models",
+                    "median [95 %]",
+                    "worse on",
+                    "p (Holm)",
+                    "verdict",
+                ],
+                rows,
+            ),
+            *_among_all(test),
+        ]
+    return lines
+
+
+def _among_all(test: Test) -> list[str]:
+    """What the contenders are among each other."""
+    lines = []
+    if test.ranking is not None:
+        means = sorted(
+            zip(test.ranking.test.mean_ranks, test.ranking.contenders),
+            key=lambda entry: entry[0],
+        )
+        ranks = ", ".join(
+            f"{markdown_text(contender.label)} {rank:.2f}"
+            for rank, contender in means
+        )
+        lines += [
+            "",
+            f"{friedman_text(test.ranking)}. Mean ranks (Nemenyi's critical "
+            f"difference {test.ranking.test.critical_difference:.2f}): "
+            f"{ranks}.",
+        ]
+    if test.least_p >= LEVEL:
+        lines += [
+            "",
+            f"With {test.pairs} pairs on so few models p is never below "
+            f"{p_value_text(test.least_p)}: more models or fewer contenders "
+            "are needed to tell any pair apart.",
+        ]
+    elif test.alike:
+        pairs = "; ".join(
+            f"{markdown_text(one)} and {markdown_text(other)}"
+            for one, other in test.alike[:_MOST_PAIRS]
+        )
+        more = len(test.alike) - _MOST_PAIRS
+        if more > 0:
+            pairs += f"; and {more} more pairs"
+        lines += ["", f"Not told apart: {pairs}."]
+    return lines

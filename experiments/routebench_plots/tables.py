@@ -2,20 +2,14 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from .quantities import (
-    THIN_SPACE,
-    Scale,
-    format_number,
-    pretty_unit,
-    scale_for,
-)
+from .latex import latex_name, latex_text
+from .markdown import markdown_row, markdown_text
+from .quantities import Scale, format_number, pretty_unit, scale_for
 from .results import VALID, Item, Metric, Results, Slot
 from .style import ABSENT, outcome_look
-from .text import word_pieces
 
 _ARROWS = {"lower": "↓", "higher": "↑", "neither": ""}
 
@@ -116,12 +110,12 @@ def to_latex(made: Sequence[Table]) -> str:
             r"\toprule",
             " & ".join(
                 ["", "Contender"]
-                + [_latex(label) for label, _ in table.heads]
+                + [latex_text(label) for label, _ in table.heads]
                 + ["Outcome"]
             )
             + r" \\",
             " & ".join(
-                ["", ""] + [_latex(unit) for _, unit in table.heads] + [""]
+                ["", ""] + [latex_text(unit) for _, unit in table.heads] + [""]
             )
             + r" \\",
         ]
@@ -129,7 +123,7 @@ def to_latex(made: Sequence[Table]) -> str:
             lines += [
                 r"\midrule",
                 rf"\multicolumn{{{columns}}}{{p{{0.95\linewidth}}}}"
-                rf"{{\textit{{{_latex_name(block.model)}}}}} \\",
+                rf"{{\textit{{{latex_name(block.model)}}}}} \\",
             ]
             lines += [
                 " & ".join(_latex_cells(row)) + r" \\" for row in block.rows
@@ -249,11 +243,6 @@ def _outcome(slot: Slot) -> str:
     )
 
 
-def markdown_row(cells: Sequence[str]) -> str:
-    """A row of a Markdown table, of cells that are Markdown already."""
-    return f"| {' | '.join(cells)} |"
-
-
 def _markdown_cells(row: Row) -> list[str]:
     outcome = f"{row.outcome}: {row.reason}" if row.reason else row.outcome
     return [
@@ -264,48 +253,13 @@ def _markdown_cells(row: Row) -> list[str]:
     ]
 
 
-def markdown_text(text: str) -> str:
-    """Text in which no character is markup, on one line."""
-    return re.sub(r"([\\`*_{}\[\]<>#|~])", r"\\\1", " ".join(text.split()))
-
-
-_LATEX = {
-    "\\": r"\textbackslash{}",
-    "~": r"\textasciitilde{}",
-    "^": r"\textasciicircum{}",
-    "<": r"\textless{}",
-    ">": r"\textgreater{}",
-    "|": r"\textbar{}",
-    "µ": r"$\mu$",
-    "²": "$^2$",
-    "³": "$^3$",
-    "×": r"$\times$",
-    "↓": r"$\downarrow$",
-    "↑": r"$\uparrow$",
-    "–": "--",
-    "\u2212": "$-$",
-    THIN_SPACE: r"\,",
-    **{char: f"\\{char}" for char in "&%$#_{}"},
-}
-
-
-def _latex(text: str) -> str:
-    """Text in which no character is a command."""
-    return "".join(_LATEX.get(char, char) for char in text)
-
-
-def _latex_name(text: str) -> str:
-    """A name that may break after the punctuation of paths."""
-    return r"\allowbreak{}".join(_latex(piece) for piece in word_pieces(text))
-
-
 def _latex_cells(row: Row) -> list[str]:
     return [
         "--" if row.rank is None else str(row.rank),
-        _latex_name(row.contender),
+        latex_name(row.contender),
         *(
-            rf"\textbf{{{_latex(n.text)}}}" if n.best else _latex(n.text)
+            rf"\textbf{{{latex_text(n.text)}}}" if n.best else latex_text(n.text)
             for n in row.numbers
         ),
-        _latex(row.outcome),
+        latex_text(row.outcome),
     ]

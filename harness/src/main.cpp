@@ -88,6 +88,7 @@ int main(int argc, char** argv) {
   routebench::add_check_planner_command(app, exit_code);
   routebench::add_new_planner_command(app, exit_code);
   routebench::add_plot_command(app, exit_code);
+  routebench::add_gate_command(app, exit_code);
   routebench::add_export_command(app, exit_code);
   routebench::add_merge_command(app, exit_code);
   routebench::add_reproduce_command(app, exit_code);

@@ -82,4 +82,8 @@ int run_python_package(const std::string& package, const std::vector<std::string
   return run_program(std::move(words));
 }
 
+void add_argument(std::vector<std::string>& arguments, const char* name, const std::string& value) {
+  if (!value.empty()) arguments.push_back(std::string(name) + "=" + value);
+}
+
 }  // namespace routebench

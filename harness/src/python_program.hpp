@@ -17,4 +17,8 @@ inline constexpr const char* kPython = "/usr/bin/python3";
 /// Throws  Error{kBadInput} if it or Python is not there, Error{kInternal} if a signal ended it.
 int run_python_package(const std::string& package, const std::vector<std::string>& arguments);
 
+/// Appends an option of a package as one word, so that its value may begin with a dash; an empty
+/// value appends nothing.
+void add_argument(std::vector<std::string>& arguments, const char* name, const std::string& value);
+
 }  // namespace routebench

@@ -29,13 +29,15 @@ class FilesTest(PlotTestCase):
             layers=4,
         )
 
-    def plot(self, *arguments: str) -> tuple[int, list[str], str]:
+    def plot(
+        self, *arguments: str, place: Path | None = None
+    ) -> tuple[int, list[str], str]:
         """Exit code, lines on stdout, text on stderr."""
         out = io.TextIOWrapper(io.BytesIO(), encoding="utf-8")
         err = io.StringIO()
         with mock.patch.object(sys, "stdout", out):
             with contextlib.redirect_stderr(err):
-                code = cli.main([*arguments, "--", str(self.folder)])
+                code = cli.main([*arguments, "--", str(place or self.folder)])
         out.flush()
         text = out.buffer.getvalue().decode()  # type: ignore[attr-defined]
         return code, text.splitlines(), err.getvalue()
@@ -58,6 +60,10 @@ class FilesTest(PlotTestCase):
                 f"{stem}.{ending}"
                 for stem in (
                     "outcomes",
+                    "ratios",
+                    "profiles",
+                    "heat-travel_mm",
+                    "heat-strokes",
                     "bars-travel_mm",
                     "bars-strokes",
                     "scatter-travel_mm-plan_cpu_ns",
@@ -66,7 +72,7 @@ class FilesTest(PlotTestCase):
                 )
                 for ending in ("png", "svg")
             ]
-            + ["summary.md", "table.md", "table.tex"],
+            + ["summary.md", "table.md", "table.tex", "comparison.tex"],
         )
         for name in names:
             self.assertGreater((place / name).stat().st_size, 0, name)
@@ -78,13 +84,16 @@ class FilesTest(PlotTestCase):
         self.assertEqual(visible, set(names))
 
     def test_equal_input_gives_equal_bytes(self) -> None:
+        several = self.folder / "several.sqlite"
+        fill(several, ["m", "n", "o"], ["a", "b", "c"], layers=4)
         folders = [self.folder / "one", self.folder / "two"]
         for folder in folders:
             code, _, _ = self.plot(
                 "--out",
                 str(folder),
-                "--metrics=deposit",
+                "--metrics=deposit,travel_mm",
                 "--formats=svg,png,pdf",
+                place=several,
             )
             self.assertEqual(code, 0)
         first, second = (
@@ -92,7 +101,9 @@ class FilesTest(PlotTestCase):
             for folder in folders
         )
         self.assertEqual(first.keys(), second.keys())
-        self.assertGreater(len(first), 15)
+        for stem in ("ratios", "profiles", "ranks", "heat-travel_mm"):
+            for ending in ("svg", "png", "pdf"):
+                self.assertIn(f"{stem}.{ending}", first)
         for name, content in first.items():
             self.assertEqual(content, second[name], name)
 

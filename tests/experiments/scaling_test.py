@@ -26,7 +26,7 @@ class FitTest(unittest.TestCase):
         law = scaling.fit([(math.exp(x), math.exp(y)) for x, y in ((0, 0), (1, 2), (2, 3))])
         assert law is not None
         self.assertAlmostEqual(law.exponent, 1.5)
-        self.assertAlmostEqual(law.half_width, 12.706 * math.sqrt(1 / 12))
+        self.assertAlmostEqual(law.half_width, 12.7062047 * math.sqrt(1 / 12))
 
     def test_one_size_has_no_law(self) -> None:
         self.assertIsNone(scaling.fit([(2, 1), (2, 3)]))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import unittest
 
 from routebench_plots.errors import PlotError
-from routebench_plots.summary import Part, summary, to_markdown
+from routebench_plots.summary import Part, summary, to_latex, to_markdown
 from support import PlotTestCase
 from synthetic import Database
 
@@ -44,7 +44,7 @@ class SummaryTest(PlotTestCase):
 
     def part(self, baseline: str | None = None) -> Part:
         """The only setting's comparison."""
-        (part,) = summary(self.results, baseline)
+        (part,) = summary(self.results, baseline).parts
         return part
 
     def test_baseline_is_valid_on_most_models(self) -> None:
@@ -79,6 +79,21 @@ class SummaryTest(PlotTestCase):
         self.assertIn("- hopeless on every model, such as easy: off", page)
         self.assertIn("| brave (baseline) | 3 of 3 | 1 (0 of 3) |", page)
         self.assertIn("choosy on h\\|ard", page)
+
+    def test_how_sure_it_is(self) -> None:
+        """Four contenders, six pairs, on at most three models: p cannot be small."""
+        page = to_markdown(summary(self.results), "it")
+        self.assertIn("### How sure that is", page)
+        self.assertIn("| choosy | 2 | 0.5 [0.5, 0.5] | 0 of 2 | 1 | no difference shown |", page)
+        self.assertIn("With 3 pairs on so few models p is never below 0.75", page)
+        self.assertNotIn("| hopeless | 0 |", page)
+
+    def test_latex_has_the_same_ratios(self) -> None:
+        table = to_latex(summary(self.results))
+        self.assertIn(r"{}choosy & 0.5 [0.5, 0.5] & 0.5 & 0 of 2 & 1 \\", table)
+        self.assertIn(r"{}hopeless & -- & -- & -- & -- \\", table)
+        self.assertIn(r"\toprule", table)
+        self.assertEqual(table.count(r"\begin{tabular}"), table.count(r"\end{tabular}"))
 
 
 if __name__ == "__main__":

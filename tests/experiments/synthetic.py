@@ -106,6 +106,9 @@ class Database:
     def __post_init__(self) -> None:
         columns = ", ".join(f"{name} REAL" for name in LAYER_METRICS)
         self.connection = sqlite3.connect(self.path)
+        # A made-up database need not outlive a power cut.
+        self.connection.execute("PRAGMA synchronous = OFF")
+        self.connection.execute("PRAGMA journal_mode = MEMORY")
         self.connection.executescript(_SCHEMA.format(columns=columns))
         self._insert("meta", "schema_version", self.schema_version)
         self._insert("meta", "experiment", "synthetic")
@@ -132,11 +135,21 @@ class Database:
         self._insert("contender", row_id, name, name, "{}", hash_)
         return row_id
 
-    def setting(self, label: str = "") -> int:
+    def setting(
+        self,
+        label: str = "",
+        printer: dict[str, object] | None = None,
+        task: dict[str, object] | None = None,
+    ) -> int:
         """Adds a setting of task and printer."""
         row_id = self._next("setting")
         self._insert(
-            "setting", row_id, label, json.dumps(TASK), "{}", f"hash{row_id}"
+            "setting",
+            row_id,
+            label,
+            json.dumps(TASK if task is None else task),
+            json.dumps(printer or {}),
+            f"hash{row_id}",
         )
         return row_id
 

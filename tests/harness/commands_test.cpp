@@ -21,7 +21,7 @@ TEST_F(Program, HelpIsThereForEveryCommand) {
   const ProgramRun help = call({"--help"});
   EXPECT_EQ(help.exit_code, 0);
   for (const std::string command : {"run", "plan", "score", "slice", "planners", "check-planner",
-                                    "new-planner", "plot", "export", "doctor"}) {
+                                    "new-planner", "plot", "gate", "export", "doctor"}) {
     EXPECT_NE(help.out.find("\n  " + command + " "), help.out.npos) << command;
     const ProgramRun own = call({command, "--help"});
     EXPECT_EQ(own.exit_code, 0) << command;

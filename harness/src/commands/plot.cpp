@@ -19,14 +19,10 @@ struct PlotOptions {
 
 std::vector<std::string> arguments_of(const PlotOptions& options) {
   std::vector<std::string> arguments;
-  const auto add = [&](const char* name, const std::string& value) {
-    // One word each, so that a value may begin with a dash.
-    if (!value.empty()) arguments.push_back(std::string(name) + "=" + value);
-  };
-  add("--out", options.out);
-  add("--formats", options.formats);
-  add("--metrics", options.metrics);
-  add("--baseline", options.baseline);
+  add_argument(arguments, "--out", options.out);
+  add_argument(arguments, "--formats", options.formats);
+  add_argument(arguments, "--metrics", options.metrics);
+  add_argument(arguments, "--baseline", options.baseline);
   arguments.insert(arguments.end(), {"--", options.results});
   return arguments;
 }

@@ -1,0 +1,1 @@
+"""Says whether new results are worse than old ones; behind `routebench gate`."""
