@@ -9,8 +9,11 @@ NEEDED = (3, 11)
 EXIT_BAD_INPUT = 2
 
 
-def start() -> int:
-    """Checks what this Python lacks before anything else is imported."""
+def start(package: str = "routebench_plots") -> int:
+    """Runs a package's command line.
+
+    Checks what this Python lacks before anything else is imported.
+    """
     if sys.version_info < NEEDED:
         wanted = ".".join(map(str, NEEDED))
         return complain(
@@ -28,9 +31,7 @@ def start() -> int:
         )
     if not __package__:
         sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
-    from routebench_plots.cli import main
-
-    return main()
+    return int(importlib.import_module(f"{package}.cli").main())
 
 
 def complain(message: str) -> int:

@@ -29,16 +29,26 @@ _INDEX = ".routebench-plots"
 """Names of the files of the last time, so that none of them goes stale."""
 
 
-class _Parser(argparse.ArgumentParser):
+class Parser(argparse.ArgumentParser):
+    """A parser whose complaints are one line, like all others."""
+
     def error(self, message: str) -> NoReturn:
-        raise PlotError(f"{message} (see routebench plot --help)")
+        raise PlotError(f"{message} (see {self.prog} --help)")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Plots, prints the files written, and returns the exit code."""
+    return carry_out(lambda: _run(arguments))
+
+
+def carry_out(work: Callable[[], Sequence[Path]]) -> int:
+    """Does a command's work, prints the files that it wrote.
+
+    Returns the exit code. Whatever goes wrong is told in one line.
+    """
     signal.signal(signal.SIGTERM, _exit_on_signal)
     try:
-        paths = _run(arguments)
+        paths = work()
     except PlotError as error:
         return _complain(str(error), EXIT_BAD_INPUT)
     except OSError as error:
@@ -75,7 +85,7 @@ def _run(arguments: Sequence[str] | None) -> list[Path]:
     with Results(database) as results:
         names = options.metrics.split(",") if options.metrics else None
         metrics = chosen_metrics(results, names)
-        with _staging(out) as folder, _progress() as report:
+        with _staging(out) as folder, progress() as report:
             written = draw_all(
                 results, metrics, folder, formats, report, options.baseline
             )
@@ -84,7 +94,7 @@ def _run(arguments: Sequence[str] | None) -> list[Path]:
 
 
 def _parse(arguments: Sequence[str] | None) -> argparse.Namespace:
-    parser = _Parser(prog="routebench plot", description=__doc__)
+    parser = Parser(prog="routebench plot", description=__doc__)
     parser.add_argument("results", type=Path)
     parser.add_argument("--out", type=Path)
     parser.add_argument("--formats", default=_DEFAULT_FORMATS)
@@ -104,13 +114,15 @@ def _formats(text: str) -> list[str]:
 
 
 @contextmanager
-def _progress() -> Iterator[Callable[[int, int], None]]:
+def progress(
+    words: str = "drew {} of {} figures",
+) -> Iterator[Callable[[int, int], None]]:
     """A line on stderr that comes and goes; nothing if no one looks on."""
     start = time.monotonic()
 
     def report(done: int, total: int) -> None:
         left = (time.monotonic() - start) / done * (total - done)
-        _show(f"drew {done} of {total} figures, about {left:.0f} s left")
+        _show(f"{words.format(done, total)}, about {left:.0f} s left")
 
     try:
         yield report

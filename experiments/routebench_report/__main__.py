@@ -1,0 +1,12 @@
+"""Entry point; also runs as a file, `python3 routebench_report/__main__.py`."""
+
+import sys
+from pathlib import Path
+
+if not __package__:
+    sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
+
+from routebench_plots.__main__ import start  # noqa: E402
+
+if __name__ == "__main__":
+    sys.exit(start("routebench_report"))

@@ -1,0 +1,262 @@
+// The picture: one canvas, a pane for each contender, one camera for all panes.
+
+const VIEW_ANGLE = 28; // degrees; narrow, so that heights hardly shift what lies below
+const COARSE_FROM = 150000; // moves that are drawn more simply while they are in motion
+const REST_MS = 220;
+const TRAVEL_LIFT_MM = 0.06;
+
+/** What a pane shows of one route. */
+class Pane {
+  constructor(route, heightMm, outlines) {
+    this.route = route;
+    this.scene = new THREE.Scene();
+    this.beads = new MoveMesh({ heightMm, leastPixels: 0.45 });
+    this.travels = new MoveMesh({
+      heightMm: 0, leastPixels: 0.8, lift: TRAVEL_LIFT_MM, shade: 0, flat: true,
+    });
+    this.retractions = new Marks({ pixels: 11, colour: RETRACTION_COLOUR });
+    this.head = new Marks({ pixels: 17, colour: "#ffffff", ring: true });
+    this.scene.add(this.beads.setMoves(route.segments));
+    this.scene.add(this.travels.setMoves(route.travels));
+    this.scene.add(this.retractions.setPlaces(this.retractionPlaces()));
+    this.scene.add(this.head.setPlaces(new Float32Array(3)));
+    this.outlines = outlines;
+    this.outlineOf = null;
+    this.outlineLines = null;
+  }
+
+  /** Marks stand where the filament is pulled back: at the beginning of the travel. */
+  retractionPlaces() {
+    const { route } = this;
+    const places = new GrowingArray(Float32Array, 64);
+    this.retractedTravels = new GrowingArray(Uint32Array, 64);
+    for (let t = 0; t < route.travelCount; t++) {
+      if (!(route.travelFlags[t] & RETRACTED)) continue;
+      const at = STRIDE * t;
+      places.push(route.travels[at]);
+      places.push(route.travels[at + 1]);
+      places.push(route.travels[at + 4] + TRAVEL_LIFT_MM);
+      this.retractedTravels.push(t);
+    }
+    return places.taken();
+  }
+
+  /**
+   * Shows layers from one place to another, the last of them up to a number of moves. Layers below
+   * the last one step back if so wished, but for their colours where the whole part is shown.
+   */
+  show(from, to, moves, shown, whole) {
+    const { route } = this;
+    if (to < 0) {
+      for (const part of [this.beads, this.travels, this.retractions, this.head]) part.draw(0, 0);
+      this.setOutline(-1);
+      return;
+    }
+    const begin = route.start(Math.min(from, to));
+    const end = route.after(to, moves);
+    this.beads.draw(begin.segment, shown.strokes ? end.segment : begin.segment);
+    const firstTravel = shown.fade ? route.start(to).travel : begin.travel;
+    this.travels.draw(firstTravel, end.travel);
+    const marks = this.retractedTravels.taken();
+    const first = firstNotBelow(marks, firstTravel);
+    this.retractions.draw(first, shown.retractions ? firstNotBelow(marks, end.travel) : first);
+    const top = route.layers[to].topMm;
+    this.beads.material.uniforms.fadeBelow.value = shown.fade && !whole ? top - 1e-3 : -1e9;
+    const nozzle = moves < route.movesOf(to) ? route.nozzle(to, moves) : null;
+    this.head.draw(0, nozzle ? 1 : 0);
+    if (nozzle) {
+      this.head.geometry.attributes.position.array.set([nozzle.x, nozzle.y, nozzle.z]);
+      this.head.geometry.attributes.position.needsUpdate = true;
+    }
+    this.setOutline(shown.outline ? to : -1);
+  }
+
+  setOutline(place) {
+    if (place === this.outlineOf) return;
+    this.outlineOf = place;
+    if (this.outlineLines) {
+      this.scene.remove(this.outlineLines);
+      this.outlineLines.geometry.dispose();
+      this.outlineLines = null;
+    }
+    const layer = place >= 0 && this.route.layers[place];
+    const shape = layer && this.outlines && this.outlines.get(layer.index);
+    if (!shape) return;
+    const ends = [];
+    for (const ring of shape.rings)
+      for (let i = 0, j = ring.length - 2; i < ring.length; j = i, i += 2)
+        ends.push(ring[j], ring[j + 1], layer.topMm, ring[i], ring[i + 1], layer.topMm);
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(ends), 3));
+    this.outlineLines = new THREE.LineSegments(
+      geometry, new THREE.LineBasicMaterial({ color: 0x8a8a8a }),
+    );
+    this.outlineLines.frustumCulled = false;
+    this.scene.add(this.outlineLines);
+  }
+
+  get moves() {
+    return this.beads.last - this.beads.first + this.travels.last - this.travels.first;
+  }
+
+  dispose() {
+    for (const part of [this.beads, this.travels, this.retractions, this.head]) part.dispose();
+    this.setOutline(-1);
+  }
+}
+
+function firstNotBelow(sorted, value) {
+  let low = 0;
+  let high = sorted.length;
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if (sorted[middle] < value) low = middle + 1;
+    else high = middle;
+  }
+  return low;
+}
+
+/** The canvas. It draws when something has changed, and not otherwise. */
+class Stage {
+  constructor(canvas) {
+    this.canvas = canvas;
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true });
+    this.renderer.setScissorTest(true);
+    this.renderer.autoClear = false;
+    this.background = new THREE.Color("#f6f7f8");
+    this.camera = new THREE.PerspectiveCamera(VIEW_ANGLE, 1, 0.5, 5000);
+    this.camera.up.set(0, 0, 1);
+    this.controls = new THREE.OrbitControls(this.camera, canvas);
+    this.controls.enableKeys = false;
+    this.controls.screenSpacePanning = true;
+    this.controls.zoomSpeed = 1.3;
+    this.controls.addEventListener("change", () => this.request(true));
+    this.panes = [];
+    this.box = { low: [0, 0, 0], high: [10, 10, 10] };
+    this.pending = false;
+    new ResizeObserver(() => this.resize()).observe(canvas.parentElement);
+  }
+
+  setPanes(panes) {
+    for (const pane of this.panes) pane.dispose();
+    this.panes = panes;
+    const boxes = panes.map((pane) => pane.route.bounds()).filter(Boolean);
+    if (boxes.length > 0)
+      this.box = {
+        low: [0, 1, 2].map((i) => Math.min(...boxes.map((box) => box.low[i]))),
+        high: [0, 1, 2].map((i) => Math.max(...boxes.map((box) => box.high[i]))),
+      };
+    for (const pane of panes) pane.scene.add(this.plate());
+    this.request();
+  }
+
+  /** Lines 10 mm apart under the part. */
+  plate() {
+    const step = 10;
+    const [x0, y0] = this.box.low.map((v) => Math.floor(v / step - 0.5) * step);
+    const [x1, y1] = this.box.high.map((v) => Math.ceil(v / step + 0.5) * step);
+    const ends = [];
+    const most = 400; // a part as large as a house needs no grid
+    if ((x1 - x0 + y1 - y0) / step < most) {
+      for (let x = x0; x <= x1; x += step) ends.push(x, y0, 0, x, y1, 0);
+      for (let y = y0; y <= y1; y += step) ends.push(x0, y, 0, x1, y, 0);
+    }
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(ends), 3));
+    return new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({ color: 0xd9dcdf }));
+  }
+
+  /** Looks at the whole part: "top" or "iso". */
+  look(from) {
+    const { low, high } = this.box;
+    const centre = low.map((v, i) => (v + high[i]) / 2);
+    const size = low.map((v, i) => high[i] - v);
+    const aspect = this.paneAspect();
+    const reach = 1 / Math.tan((VIEW_ANGLE * Math.PI) / 360);
+    const target = new THREE.Vector3(...centre);
+    if (from === "top") {
+      target.z = high[2];
+      const away = (Math.max(size[1], size[0] / aspect) / 2) * 1.12 * reach;
+      this.camera.position.set(centre[0], centre[1] - away * 1e-3, high[2] + away);
+    } else {
+      const radius = (Math.hypot(...size) / 2) * 1.04;
+      const away = (radius * reach) / Math.min(1, aspect);
+      const way = new THREE.Vector3(0.42, -0.78, 0.62).normalize().multiplyScalar(away);
+      this.camera.position.copy(target).add(way);
+    }
+    this.controls.target.copy(target);
+    this.controls.update();
+    this.request();
+  }
+
+  paneAspect() {
+    const width = this.canvas.clientWidth / Math.max(1, this.panes.length);
+    return width / Math.max(1, this.canvas.clientHeight) || 1;
+  }
+
+  /** Six numbers: where the camera is and what it looks at. */
+  cameraPlace() {
+    return [...this.camera.position.toArray(), ...this.controls.target.toArray()];
+  }
+
+  setCameraPlace(numbers) {
+    this.camera.position.fromArray(numbers);
+    this.controls.target.fromArray(numbers, 3);
+    this.controls.update();
+    this.request();
+  }
+
+  resize() {
+    const frame = this.canvas.parentElement;
+    this.renderer.setPixelRatio(window.devicePixelRatio || 1);
+    this.renderer.setSize(frame.clientWidth, frame.clientHeight, false);
+    this.request();
+  }
+
+  /** Draws soon; what is in motion is drawn more simply if there is much of it. */
+  request(moving = false) {
+    if (moving) {
+      this.movingUntil = performance.now() + REST_MS;
+      clearTimeout(this.rest);
+      this.rest = setTimeout(() => this.request(), REST_MS + 20);
+    }
+    if (this.pending) return;
+    this.pending = true;
+    requestAnimationFrame(() => this.render());
+  }
+
+  render() {
+    this.pending = false;
+    const width = this.canvas.clientWidth;
+    const height = this.canvas.clientHeight;
+    if (width === 0 || height === 0) return;
+    const { renderer, camera } = this;
+    const columns = Math.max(1, this.panes.length);
+    const paneWidth = width / columns;
+    const size = Math.hypot(...this.box.low.map((v, i) => this.box.high[i] - v));
+    const away = camera.position.distanceTo(this.controls.target);
+    camera.near = Math.max(0.01, (away - size) / 20, away / 400);
+    camera.far = away + 4 * size + 100;
+    camera.aspect = paneWidth / height;
+    camera.updateProjectionMatrix();
+    const moves = this.panes.reduce((sum, pane) => sum + pane.moves, 0);
+    const coarse = moves > COARSE_FROM && performance.now() < this.movingUntil;
+    const pixel = (2 * Math.tan((VIEW_ANGLE * Math.PI) / 360)) / height;
+    renderer.setScissor(0, 0, width, height);
+    renderer.setViewport(0, 0, width, height);
+    renderer.setClearColor(this.background);
+    renderer.clear();
+    this.panes.forEach((pane, i) => {
+      pane.beads.setCoarse(coarse);
+      pane.beads.material.uniforms.pixel.value = pixel;
+      pane.travels.material.uniforms.pixel.value = pixel;
+      for (const marks of [pane.retractions, pane.head])
+        marks.material.uniforms.pixels.value =
+          (marks === pane.head ? 17 : 11) * renderer.getPixelRatio();
+      renderer.setViewport(i * paneWidth, 0, paneWidth, height);
+      renderer.setScissor(i * paneWidth, 0, paneWidth, height);
+      renderer.render(pane.scene, camera);
+    });
+    this.frames = (this.frames || 0) + 1;
+  }
+}
