@@ -13,8 +13,10 @@ packages=(
   libcli11-dev libsqlite3-dev libtomlplusplus-dev nlohmann-json3-dev
   # tests and benchmarks
   libbenchmark-dev libgtest-dev
-  # plots
-  python3 python3-matplotlib python3-numpy
+  # plots and reports
+  python3 python3-matplotlib python3-numpy libjs-three
+  # tests of the report in a browser
+  chromium chromium-driver
   # the meshes behind cgal: models
   libcgal-demo
 )

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from routebench_plots.errors import PlotError
 from routebench_plots.shapes import Points, Stroke
 
-QUANTUM_MM = 0.001
+QUANTUM_MM = 0.0001
 """What coordinates, heights and widths are whole multiples of."""
 
 _FARTHEST_MM = (2**31 - 1) * QUANTUM_MM / 2
@@ -138,7 +138,7 @@ def _quantised(lengths_mm: Sequence[float] | Points) -> NDArray[np.int64]:
     values = np.asarray(lengths_mm, dtype=np.float64)
     if values.size and not np.abs(values).max() <= _FARTHEST_MM:
         raise PlotError(
-            f"a length or coordinate is beyond {_FARTHEST_MM / 1e6:.3g} km: "
+            f"a length or coordinate is beyond {_FARTHEST_MM / 1e3:.0f} m: "
             "too far for the route viewer"
         )
     return np.rint(values / QUANTUM_MM).astype(np.int64)

@@ -4,18 +4,22 @@ from __future__ import annotations
 
 import argparse
 import os
+import shutil
+import subprocess
 import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
 from routebench_plots.cli import Parser, carry_out, progress
 from routebench_plots.errors import PlotError
+from routebench_plots.naming import printable
 from routebench_plots.results import DATABASE_NAME, Results, find_database
 
 from . import content, sections
 from .page import page, viewer_section
 
 _SQLITE_HEAD = b"SQLite format 3\0"
+_SCREENS = ("DISPLAY", "WAYLAND_DISPLAY")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -37,6 +41,8 @@ def _run(arguments: Sequence[str] | None) -> Path:
         text = _gcode_view(options.input)
         out = options.out or _beside(options.input)
     _write(out, text)
+    if options.command == "view" and not options.no_open:
+        _show(out)
     return out
 
 
@@ -49,6 +55,8 @@ def _parse(arguments: Sequence[str] | None) -> argparse.Namespace:
         command.add_argument("--out", type=Path)
         if name == "report":
             command.add_argument("--baseline")
+        else:
+            command.add_argument("--no-open", action="store_true")
     return parser.parse_args(arguments)
 
 
@@ -87,7 +95,8 @@ def _gcode_view(file: Path) -> str:
             f"file of G-code, a folder of results, or its {DATABASE_NAME}"
         )
     text = data.decode("utf-8", errors="replace")
-    return page(content.gcode_content(file.name, text), [viewer_section()])
+    name = printable(file.name)
+    return page(content.gcode_content(name, text), [viewer_section()])
 
 
 def _is_results(file: Path) -> bool:
@@ -106,6 +115,19 @@ def _is_results(file: Path) -> bool:
 def _beside(file: Path) -> Path:
     """A name of our own, so that no page of the user's is overwritten."""
     return file.with_name(f"{file.name}.view.html")
+
+
+def _show(file: Path) -> None:
+    """Opens the page in the user's browser, if there is a screen for it."""
+    opener = shutil.which("xdg-open")
+    if opener and any(map(os.environ.get, _SCREENS)):
+        subprocess.Popen(
+            [opener, file.resolve()],
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+            start_new_session=True,
+        )
 
 
 def _write(out: Path, text: str) -> None:

@@ -34,6 +34,15 @@ from .blocks import (
 )
 
 
+_COUNTED_IN_A_FILE = (
+    ("travel_mm", "Travel", "mm", "lower", "moves without material"),
+    ("travels", "Travels", "", "lower", "number of such moves"),
+    ("retractions", "Retractions", "", "lower", "as the file makes them"),
+    ("extrude_mm", "Extruded length", "mm", "neither", "length of all strokes"),
+)
+"""What the page counts in G-code that no judge has seen."""
+
+
 @dataclass(frozen=True)
 class Place:
     """A cell and where it stands: everything in the page refers to it."""
@@ -74,6 +83,18 @@ def base_data(title: str) -> dict[str, Any]:
 def gcode_content(name: str, text: str) -> Content:
     """A page that shows a file of G-code, which it reads itself."""
     data = base_data(name)
+    data["metrics"] = [
+        {
+            "name": metric,
+            "label": label,
+            "unit": unit,
+            "factor": 1,
+            "better": better,
+            "meaning": meaning,
+            "of_interest": True,
+        }
+        for metric, label, unit, better, meaning in _COUNTED_IN_A_FILE
+    ]
     data["gcode"] = {"name": name, "block": "gcode"}
     return Content(data, {"gcode": packed(text.encode())})
 

@@ -88,6 +88,8 @@ int main(int argc, char** argv) {
   routebench::add_check_planner_command(app, exit_code);
   routebench::add_new_planner_command(app, exit_code);
   routebench::add_plot_command(app, exit_code);
+  routebench::add_report_command(app, exit_code);
+  routebench::add_view_command(app, exit_code);
   routebench::add_export_command(app, exit_code);
   routebench::add_doctor_command(app, exit_code);
   app.footer(exit_codes + "\nEach command has its own help: routebench plan --help.");

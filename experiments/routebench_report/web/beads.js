@@ -181,12 +181,12 @@ void main() {
 
 /** Marks of a fixed size on the screen. */
 class Marks {
-  constructor({ pixels, colour, ring = false }) {
+  constructor({ colour, ring = false }) {
     this.material = new THREE.RawShaderMaterial({
       vertexShader: MARK_VERTEX,
       fragmentShader: MARK_FRAGMENT,
       uniforms: {
-        pixels: { value: pixels },
+        pixels: { value: 10 },
         fill: { value: new THREE.Color(colour) },
         ring: { value: ring ? 1 : 0 },
       },
@@ -206,6 +206,11 @@ class Marks {
   draw(first, last) {
     this.geometry.setDrawRange(first, Math.max(0, last - first));
     this.points.visible = last > first;
+    this.shown = last - first;
+  }
+
+  setPixels(pixels) {
+    this.material.uniforms.pixels.value = pixels;
   }
 
   dispose() {

@@ -5,24 +5,27 @@ class LayerChart {
     this.canvas = canvas;
     this.series = [];
     this.kept = [];
-    this.last = 1;
+    this.top = 1;
+    this.layers = 0;
     this.cursor = null;
     this.from = null;
     canvas.addEventListener("click", (event) => {
       const box = canvas.getBoundingClientRect();
       const share = (event.clientX - box.left) / box.width;
-      onPick(Math.round(share * this.last));
+      onPick(share * this.top);
     });
     new ResizeObserver(() => this.draw()).observe(canvas);
   }
 
-  /** Series of {colour, indices, values}; `cursor` and `range` are layer numbers. */
+  /** Series of {colour, zMm, values}; `cursor`, `from` and `kept` are heights, mm. */
   show(series, { cursor, from, kept }) {
     this.series = series;
     this.cursor = cursor;
     this.from = from;
     this.kept = kept;
-    this.last = Math.max(1, ...series.map((s) => s.indices[s.indices.length - 1] || 0), ...kept);
+    const tops = [...series.map((s) => s.zMm), kept].map((heights) => heights[heights.length - 1]);
+    this.top = Math.max(1e-3, ...tops.filter((z) => z !== undefined));
+    this.layers = Math.max(0, ...series.map((s) => s.zMm.length));
     this.draw();
   }
 
@@ -37,7 +40,7 @@ class LayerChart {
     const pen = canvas.getContext("2d");
     pen.scale(ratio, ratio);
     pen.clearRect(0, 0, width, height);
-    const x = (index) => (index / this.last) * (width - 2) + 1;
+    const x = (z) => (z / this.top) * (width - 2) + 1;
     let high = 0;
     let low = 0;
     for (const { values } of this.series)
@@ -51,21 +54,21 @@ class LayerChart {
       pen.fillRect(x(this.from) - 1, 0, x(this.cursor) - x(this.from) + 2, height);
     }
     // Dots where a route was kept, if it was not everywhere.
-    if (this.kept.length <= this.last) {
+    if (this.kept.length < this.layers) {
       pen.fillStyle = "#444";
-      for (const index of this.kept) pen.fillRect(x(index) - 1, height - 3, 2, 3);
+      for (const z of this.kept) pen.fillRect(x(z) - 1, height - 3, 2, 3);
     }
-    this.series.forEach(({ colour, indices, values }, number) => {
+    this.series.forEach(({ colour, zMm, values }, number) => {
       pen.beginPath();
       let down = true;
-      indices.forEach((index, row) => {
+      zMm.forEach((z, row) => {
         const value = values[row];
         if (Number.isNaN(value)) {
           down = true;
           return;
         }
-        if (down) pen.moveTo(x(index), y(value));
-        else pen.lineTo(x(index), y(value));
+        if (down) pen.moveTo(x(z), y(value));
+        else pen.lineTo(x(z), y(value));
         down = false;
       });
       pen.strokeStyle = colour;

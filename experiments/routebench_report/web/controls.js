@@ -7,9 +7,9 @@ class Controls {
     this.experiment = experiment;
     this.stage = new Stage(this.get("canvas"));
     this.viewer = new Viewer(experiment, this.stage, () => this.refresh());
-    this.chart = new LayerChart(this.get("chart"), (index) => {
+    this.chart = new LayerChart(this.get("chart"), (zMm) => {
       this.viewer.message = "";
-      this.viewer.setLevel(this.viewer.levelOfIndex(index));
+      this.viewer.setLevel(this.viewer.nearest((level) => Math.abs(level.zMm - zMm)));
     });
     this.playing = false;
     this.wireSelects();
@@ -31,7 +31,7 @@ class Controls {
 
   wireSelects() {
     const { experiment, viewer } = this;
-    fill(this.get("model"), experiment.models.map((name, i) => [i, name]));
+    fill(this.get("model"), experiment.shortNames.map((name, i) => [i, name]));
     fill(this.get("setting"), experiment.settings.map(({ name }, i) => [i, name || "default"]));
     fill(this.get("colour"), MODES.map((mode) => [mode, MODE_WORDS[mode]]));
     fill(this.get("metric"), experiment.metrics.map(({ label, unit }, i) => [
@@ -82,7 +82,7 @@ class Controls {
   }
 
   look(from) {
-    this.stage.look(from);
+    this.viewer.look(from);
     this.refresh();
   }
 
@@ -261,6 +261,7 @@ class Controls {
     fill(this.get("a"), sources.length ? sources : [["", "nothing yet"]], state.a);
     fill(this.get("b"), [["", "nothing"], ...sources], state.b);
     this.get("model").value = state.model;
+    this.get("model").title = experiment.models[state.model] || "";
     this.get("setting").value = state.setting;
     this.get("colour").value = state.colour;
     this.get("metric").value = state.metric;
@@ -339,6 +340,8 @@ class Controls {
       counted(sum.retractions, "retraction"),
     ];
     if (side.route.knowsCrossings) words.push(counted(sum.crossings, "crossing"));
+    if (side.moved && Math.hypot(...side.moved) > 0.1)
+      words.push(`shown moved by ${side.moved.map((v) => formatNumber(Number(v.toFixed(1)))).join(", ")} mm`);
     return words.join(" · ");
   }
 
@@ -370,18 +373,19 @@ class Controls {
     this.chart.show(
       scored.map((side) => ({
         colour: side.source.colour,
-        indices: side.scores.indices,
+        zMm: side.scores.zMm,
         values: side.scores.columns[state.metric],
       })),
       {
-        cursor: level ? level.index : null,
-        from: level ? viewer.levels[state.from].index : null,
-        kept: viewer.levels.map(({ index }) => index),
+        cursor: level ? level.zMm : null,
+        from: level ? viewer.levels[state.from].zMm : null,
+        kept: viewer.levels.map(({ zMm }) => zMm),
       },
     );
     const here = level
       ? scored.map((side) => {
-          const row = side.scores.indices.indexOf(level.index);
+          const place = level.places[viewer.sides.indexOf(side)];
+          const row = place < 0 ? -1 : side.scores.indices.indexOf(side.route.layers[place].index);
           const value = row < 0 ? NaN : side.scores.columns[state.metric][row];
           return Number.isNaN(value) ? "n/a" : viewer.amount(value);
         })

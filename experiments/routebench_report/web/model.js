@@ -6,6 +6,7 @@ const ROUTES_KEPT = 4;
 class Experiment {
   constructor(data) {
     Object.assign(this, data);
+    this.shortNames = shortNames(this.models);
     this.routes = new Map();
     this.outlines = new Map();
     this.scores = new Map();
@@ -57,6 +58,12 @@ class Experiment {
       });
     });
   }
+}
+
+/** Files without their folders, where that leaves no two alike. */
+function shortNames(names) {
+  const short = names.map((name) => name.replace(/^[^?]*\/(?=[^/?]+(\?|$))/, ""));
+  return names.map((name, i) => (short.indexOf(short[i]) === short.lastIndexOf(short[i]) ? short[i] : name));
 }
 
 /** What `make` promises, kept by its key; beyond `most` the oldest is forgotten. */

@@ -1,7 +1,7 @@
 // The outline of a layer, and how much of a straight way lies outside of it.
 
 /** What the judge allows a travel to be outside without calling it a crossing, plus rounding. */
-const CROSSING_MM = 0.002;
+const CROSSING_MM = 0.0005;
 
 /** A layer's edges in rows by y, so that a way only meets those near it. */
 class Outline {

@@ -95,14 +95,17 @@ class Palette {
     } else if (speedRange) {
       const [low, high] = speedRange.map((v) => formatNumber(v));
       const how = speedsAreModelled ? "mean, by the printer’s limits" : "as commanded";
-      entries.push({ shape: "ramp", from: low, to: `${high} mm/s, ${how}` });
+      const words = `${high} mm/s, ${how}`;
+      if (low === high) entries.push({ colour: `rgb(${ramp(1)})`, shape: "bead", words });
+      else entries.push({ shape: "ramp", from: low, to: words });
     }
     if (shown.travels) entries.push({ colour: this.colours.travel, shape: "line", words: "travel" });
     if (shown.crossings && routes.some((route) => route.knowsCrossings))
       entries.push({ colour: CROSSING_COLOUR, shape: "thick", words: "crossing: leaves the part" });
     if (shown.retractions)
       entries.push({ colour: RETRACTION_COLOUR, shape: "triangle", words: "retraction" });
-    if (shown.outline) entries.push({ colour: "#8A8A8A", shape: "line", words: "outline" });
+    if (shown.outline && routes.some((route) => route.knowsCrossings))
+      entries.push({ colour: "#8A8A8A", shape: "line", words: "outline" });
     return entries;
   }
 }

@@ -188,10 +188,17 @@ class Route {
     return sum;
   }
 
-  /** Box around all that is laid. */
-  bounds() {
+  /** Box around the part: what is laid but skirts, supports and the like, where they are told. */
+  partBounds() {
+    const known = this.kinds.map((kind) => ["wall", "dense", "sparse"].includes(kind));
+    return this.bounds((segment) => known[this.segmentKind[segment]]) || this.bounds();
+  }
+
+  /** Box around all that is laid, or those segments of it that `counts` says. */
+  bounds(counts = () => true) {
     const box = { low: [Infinity, Infinity, 0], high: [-Infinity, -Infinity, 0] };
     for (let i = 0; i < this.segments.length; i += STRIDE) {
+      if (!counts(i / STRIDE)) continue;
       for (const [x, y] of [
         [this.segments[i], this.segments[i + 1]],
         [this.segments[i + 2], this.segments[i + 3]],

@@ -2,6 +2,7 @@
 
 const VIEW_ANGLE = 28; // degrees; narrow, so that heights hardly shift what lies below
 const COARSE_FROM = 150000; // moves that are drawn more simply while they are in motion
+const CROWD = 100; // more marks than these are drawn smaller
 const REST_MS = 220;
 const TRAVEL_LIFT_MM = 0.06;
 
@@ -9,13 +10,16 @@ const TRAVEL_LIFT_MM = 0.06;
 class Pane {
   constructor(route, heightMm, outlines) {
     this.route = route;
-    this.scene = new THREE.Scene();
+    this.heightMm = heightMm;
+    this.whole = new THREE.Scene();
+    this.scene = new THREE.Group(); // may stand elsewhere than its coordinates say
+    this.whole.add(this.scene);
     this.beads = new MoveMesh({ heightMm, leastPixels: 0.45 });
     this.travels = new MoveMesh({
       heightMm: 0, leastPixels: 0.8, lift: TRAVEL_LIFT_MM, shade: 0, flat: true,
     });
-    this.retractions = new Marks({ pixels: 11, colour: RETRACTION_COLOUR });
-    this.head = new Marks({ pixels: 17, colour: "#ffffff", ring: true });
+    this.retractions = new Marks({ colour: RETRACTION_COLOUR });
+    this.head = new Marks({ colour: "#ffffff", ring: true });
     this.scene.add(this.beads.setMoves(route.segments));
     this.scene.add(this.travels.setMoves(route.travels));
     this.scene.add(this.retractions.setPlaces(this.retractionPlaces()));
@@ -23,6 +27,24 @@ class Pane {
     this.outlines = outlines;
     this.outlineOf = null;
     this.outlineLines = null;
+  }
+
+  /** Moves the route sideways onto the middle of another one. Returns by how much, mm. */
+  moveOnto(other) {
+    const middle = (box) => [0, 1].map((i) => (box.low[i] + box.high[i]) / 2);
+    const [own, wanted] = [this.route.partBounds(), other.partBounds()];
+    if (!own || !wanted) return [0, 0];
+    const [from, to] = [middle(own), middle(wanted)];
+    this.scene.position.set(to[0] - from[0], to[1] - from[1], 0);
+    return [to[0] - from[0], to[1] - from[1]];
+  }
+
+  /** Box around all that is laid, where it stands. */
+  bounds() {
+    const box = this.route.bounds();
+    if (!box) return null;
+    const shift = this.scene.position.toArray();
+    return { low: box.low.map((v, i) => v + shift[i]), high: box.high.map((v, i) => v + shift[i]) };
   }
 
   /** Marks stand where the filament is pulled back: at the beginning of the travel. */
@@ -140,13 +162,13 @@ class Stage {
   setPanes(panes) {
     for (const pane of this.panes) pane.dispose();
     this.panes = panes;
-    const boxes = panes.map((pane) => pane.route.bounds()).filter(Boolean);
+    const boxes = panes.map((pane) => pane.bounds()).filter(Boolean);
     if (boxes.length > 0)
       this.box = {
         low: [0, 1, 2].map((i) => Math.min(...boxes.map((box) => box.low[i]))),
         high: [0, 1, 2].map((i) => Math.max(...boxes.map((box) => box.high[i]))),
       };
-    for (const pane of panes) pane.scene.add(this.plate());
+    for (const pane of panes) pane.whole.add(this.plate());
     this.request();
   }
 
@@ -166,8 +188,8 @@ class Stage {
     return new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({ color: 0xd9dcdf }));
   }
 
-  /** Looks at the whole part: "top" or "iso". */
-  look(from) {
+  /** Looks at the whole part: "top", from above on what is at a height, or "iso". */
+  look(from, heightMm) {
     const { low, high } = this.box;
     const centre = low.map((v, i) => (v + high[i]) / 2);
     const size = low.map((v, i) => high[i] - v);
@@ -175,14 +197,22 @@ class Stage {
     const reach = 1 / Math.tan((VIEW_ANGLE * Math.PI) / 360);
     const target = new THREE.Vector3(...centre);
     if (from === "top") {
-      target.z = high[2];
+      target.z = heightMm === undefined ? high[2] : heightMm;
       const away = (Math.max(size[1], size[0] / aspect) / 2) * 1.12 * reach;
-      this.camera.position.set(centre[0], centre[1] - away * 1e-3, high[2] + away);
+      this.camera.position.set(centre[0], centre[1] - away * 1e-3, target.z + away);
     } else {
-      const radius = (Math.hypot(...size) / 2) * 1.04;
-      const away = (radius * reach) / Math.min(1, aspect);
-      const way = new THREE.Vector3(0.42, -0.78, 0.62).normalize().multiplyScalar(away);
-      this.camera.position.copy(target).add(way);
+      const way = new THREE.Vector3(0.42, -0.78, 0.62).normalize();
+      const across = new THREE.Vector3(0, 0, 1).cross(way).normalize();
+      const upright = way.clone().cross(across);
+      // As near as all corners of the box are still seen from.
+      let away = 1;
+      for (let corner = 0; corner < 8; corner++) {
+        const to = new THREE.Vector3(...size.map((s, i) => (corner & (1 << i) ? s : -s) / 2));
+        const wide = (Math.abs(to.dot(across)) * reach) / aspect;
+        const tall = Math.abs(to.dot(upright)) * reach;
+        away = Math.max(away, to.dot(way) + Math.max(wide, tall) * 1.15);
+      }
+      this.camera.position.copy(target).add(way.multiplyScalar(away));
     }
     this.controls.target.copy(target);
     this.controls.update();
@@ -250,12 +280,12 @@ class Stage {
       pane.beads.setCoarse(coarse);
       pane.beads.material.uniforms.pixel.value = pixel;
       pane.travels.material.uniforms.pixel.value = pixel;
-      for (const marks of [pane.retractions, pane.head])
-        marks.material.uniforms.pixels.value =
-          (marks === pane.head ? 17 : 11) * renderer.getPixelRatio();
+      const few = pane.retractions.shown <= CROWD;
+      pane.retractions.setPixels((few ? 11 : 7) * renderer.getPixelRatio());
+      pane.head.setPixels(17 * renderer.getPixelRatio());
       renderer.setViewport(i * paneWidth, 0, paneWidth, height);
       renderer.setScissor(i * paneWidth, 0, paneWidth, height);
-      renderer.render(pane.scene, camera);
+      renderer.render(pane.whole, camera);
     });
     this.frames = (this.frames || 0) + 1;
   }

@@ -19,7 +19,7 @@ class CellTable {
     const { experiment } = this;
     const { cells } = experiment;
     const text = (title, of) => ({ title, of, number: false });
-    const columns = [text("Model", (cell) => experiment.models[cell.model])];
+    const columns = [text("Model", (cell) => experiment.shortNames[cell.model])];
     if (experiment.settings.length > 1)
       columns.push(text("Setting", (cell) => experiment.settings[cell.setting].name));
     columns.push(text("Contender", (cell) => experiment.contenders[cell.contender].name));

@@ -1,6 +1,7 @@
 // What the viewer shows and how it gets there. The elements of the page are wired in controls.js.
 
 const SAME_LAYER_SHARE = 0.4; // layers of two routes are one if their tops are nearer, in heights
+const THICKEST_MM = 1; // a layer of G-code; what is farther apart has a gap between
 const TOGGLES = ["strokes", "travels", "crossings", "retractions", "outline", "fade"];
 
 class Viewer {
@@ -54,6 +55,7 @@ class Viewer {
     if (turn !== this.turn) return;
     this.sides = sides;
     this.findLevels();
+    this.alignFiles();
     const { state } = this;
     const sameModel = model === state.model && topMm !== undefined;
     state.level = sameModel ? this.levelNear(topMm) : this.levels.length - 1;
@@ -61,7 +63,7 @@ class Viewer {
     if (!sameModel && !wasSingle) state.from = 0;
     state.move = null;
     this.stage.setPanes(sides.filter((side) => side.pane).map((side) => side.pane));
-    if (!keepCamera || !sameModel) this.stage.look(this.levels.length > 1 ? "iso" : "top");
+    if (!keepCamera || !sameModel) this.look(this.levels.length > 1 ? "iso" : "top");
     this.paint();
     this.update();
   }
@@ -90,9 +92,7 @@ class Viewer {
               : `${cell.outcome_words}: ${cell.reason}`;
           return { key, source, cell, scores, why };
         }
-        const pane = new Pane(
-          route, experiment.heightOf(state.setting), await experiment.outlinesOf(cell),
-        );
+        const pane = new Pane(route, this.heightMm(), await experiment.outlinesOf(cell));
         return { key, source, cell, scores, route, pane };
       }),
     );
@@ -100,10 +100,7 @@ class Viewer {
 
   /** The layers of all sides, lowest first, those of equal height together. */
   findLevels() {
-    const height = this.experiment.settings.length
-      ? this.experiment.heightOf(this.state.setting)
-      : DEFAULT_HEIGHT_MM;
-    const near = SAME_LAYER_SHARE * height;
+    const near = SAME_LAYER_SHARE * this.heightMm();
     const all = [];
     this.sides.forEach((side, number) => {
       if (!side.route) return;
@@ -119,6 +116,39 @@ class Viewer {
       }
       level.places[number] = place;
     }
+    this.sides.forEach((side, number) => {
+      if (side.route) this.findThicker(side, number);
+    });
+  }
+
+  heightMm() {
+    return this.experiment.settings.length
+      ? this.experiment.heightOf(this.state.setting)
+      : DEFAULT_HEIGHT_MM;
+  }
+
+  /** Where layers are of unequal height, a level shows the layer that it runs through. */
+  findThicker(side, number) {
+    const { layers } = side.route;
+    let place = 0;
+    for (const level of this.levels) {
+      while (place < layers.length && layers[place].topMm < level.topMm - 1e-6) place++;
+      if (place === layers.length) break;
+      if (level.places[number] >= 0) continue;
+      const below = place > 0 ? layers[place - 1].topMm : 0;
+      const most = side.cell ? side.pane.heightMm : THICKEST_MM;
+      const thickness = Math.min(most, layers[place].topMm - below);
+      if (layers[place].topMm - thickness < level.topMm - 1e-6) level.places[number] = place;
+    }
+  }
+
+  /** A file may have been made for another place on the bed: it is shown where the other side is. */
+  alignFiles() {
+    const [one, other] = this.sides;
+    if (!one || !other || !one.route || !other.route) return;
+    const [file, fixed] = other.key[0] === "f" ? [other, one] : [one, other];
+    if (file.key[0] !== "f") return;
+    file.moved = file.pane.moveOnto(fixed.route);
   }
 
   levelNear(topMm) {
@@ -258,6 +288,12 @@ class Viewer {
     return { from: Math.max(0, from), to, moves, here };
   }
 
+  /** From above, on the current layer ("top"), or from the side ("iso"). */
+  look(from) {
+    const level = this.levels[this.state.level];
+    this.stage.look(from, level && level.topMm);
+  }
+
   // ---- jumps ----
 
   /** Goes to the worst layer of a side under the metric; called again, to the next worst. */
@@ -271,7 +307,7 @@ class Viewer {
     const better = metric.better === "higher" ? "higher" : "lower";
     const worst = worstLayers(side.scores, this.state.metric, better);
     const what = metric.better === "neither" ? "largest" : "worst";
-    this.visit(`worst ${number} ${side.key}`, worst, side, (entry, rank) => {
+    this.visit(`worst ${number} ${side.key}`, worst, number, (entry, rank) => {
       const nth = rank === 0 ? what : `${ordinal(rank + 1)} ${what}`;
       return `${side.source.name}: layer ${entry.index} is the ${nth} by ${metric.label}, ` +
         this.amount(entry.value);
@@ -286,24 +322,28 @@ class Viewer {
       this.say("A difference needs a contender on either side.");
       return;
     }
-    const theirs = new Map(other.scores.indices.map((index, row) => [index, row]));
+    const theirs = other.scores.zMm;
     const column = this.state.metric;
     const found = [];
+    let near = 0;
     one.scores.indices.forEach((index, row) => {
-      if (!theirs.has(index)) return;
+      const z = one.scores.zMm[row];
+      while (near + 1 < theirs.length && Math.abs(theirs[near + 1] - z) <= Math.abs(theirs[near] - z))
+        near++;
+      if (theirs.length === 0 || Math.abs(theirs[near] - z) > 0.6 * this.heightMm()) return;
       const left = one.scores.columns[column][row];
-      const right = other.scores.columns[column][theirs.get(index)];
+      const right = other.scores.columns[column][near];
       if (Number.isNaN(left) || Number.isNaN(right)) return;
       found.push({ index, value: Math.abs(left - right), left, right });
     });
     found.sort((a, b) => b.value - a.value || a.index - b.index);
-    this.visit(`difference ${one.key} ${other.key}`, found, one, (entry) =>
+    this.visit(`difference ${one.key} ${other.key}`, found, 0, (entry) =>
       `Layer ${entry.index}: ${metric.label} ${this.amount(entry.left)} on the left, ` +
       `${this.amount(entry.right)} on the right`);
   }
 
   /** Goes to the next of the listed layers whose route was kept, and says so if others come before. */
-  visit(key, entries, side, words) {
+  visit(key, entries, number, words) {
     const full = [
       key, this.state.metric, this.state.model, this.state.setting, this.state.seed,
     ].join(" ");
@@ -312,7 +352,8 @@ class Viewer {
       this.say("No layer has a value of this metric.");
       return;
     }
-    const kept = new Set(side.route ? side.route.layers.map((layer) => layer.index) : []);
+    const { route } = this.sides[number];
+    const kept = new Map(route ? route.layers.map((layer, place) => [layer.index, place]) : []);
     const start = this.visits.next % entries.length;
     let rank = start;
     while (rank < entries.length && !kept.has(entries[rank].index)) rank++;
@@ -328,7 +369,8 @@ class Viewer {
     const missed = rank > start
       ? ` ${words(entries[start], start)}, but its route was not kept.`
       : "";
-    this.setLevel(this.levelOfIndex(entries[rank].index), { from: 0 });
+    const place = kept.get(entries[rank].index);
+    this.setLevel(this.levels.findIndex((level) => level.places[number] === place), { from: 0 });
     this.say(`${words(entries[rank], rank)}.${missed}`);
   }
 

@@ -17,6 +17,8 @@ void add_planners_command(CLI::App& app, int& exit_code);
 void add_check_planner_command(CLI::App& app, int& exit_code);
 void add_new_planner_command(CLI::App& app, int& exit_code);
 void add_plot_command(CLI::App& app, int& exit_code);
+void add_report_command(CLI::App& app, int& exit_code);
+void add_view_command(CLI::App& app, int& exit_code);
 void add_export_command(CLI::App& app, int& exit_code);
 void add_doctor_command(CLI::App& app, int& exit_code);
 
