@@ -112,7 +112,7 @@ def _matrices(results: Results) -> Iterator[str]:
     cells = [cell for slot in slots for cell in slot.cells]
     valid = sum(cell.outcome == VALID for cell in cells)
     missing = sum(not slot.cells for slot in slots)
-    words = f"{valid} of {counted(len(cells), 'cell')} are valid; only these are ranked."
+    words = f"{valid} of {len(cells)} cells are valid; only these are ranked."
     if missing:
         words += f" {missing} were not run."
     if results.earlier_cells:

@@ -55,6 +55,7 @@ async function start() {
     const wanted = readLink(location.hash);
     if (wanted) followLink(wanted);
   });
+  performance.mark("ready");
   document.documentElement.dataset.ready = "yes";
 }
 
