@@ -16,7 +16,8 @@ if [[ $libraries == *"$build"* ]]; then
   exit 1
 fi
 # Where these are missing, the program takes those of the source tree, if that is still there.
-for file in planner_template/cpp/planner.cpp routebench_plots/__main__.py; do
+for file in planner_template/cpp/planner.cpp routebench_plots/__main__.py \
+    routebench_report/__main__.py routebench_report/web/viewer.js; do
   if [ ! -f "$work/moved/share/routebench/$file" ]; then
     echo "plugin_project.sh: $file is not installed" >&2
     exit 1

@@ -1,5 +1,6 @@
 // Beads and travels as three.js meshes. One small template is drawn once for every move by the
 // graphics card, from the route's own arrays; scrubbing only changes which part of them is drawn.
+// Where that is too slow, beads are lines.
 
 const BEAD_VERTEX = `
 precision highp float;
@@ -58,15 +59,37 @@ const ROOF = {
   ],
 };
 
-/** A flat strip, for when there is much to draw at once. */
+/** A flat strip. */
 const STRIP = {
   corners: [[0, 1, -0.6], [1, 1, 0.6], [1, -1, 0.6], [0, -1, -0.6]],
   triangles: [[0, 1, 2], [0, 2, 3]],
 };
 
-/** Moves of a route that are drawn alike. */
+const LINE_VERTEX = `
+precision highp float;
+uniform mat4 modelViewMatrix;
+uniform mat4 projectionMatrix;
+uniform float fadeBelow;
+attribute vec3 position;
+attribute vec4 tint;
+varying vec3 colour;
+void main() {
+  colour = tint.rgb;
+  if (position.z < fadeBelow) colour = mix(colour, vec3(0.87, 0.885, 0.9), 0.72);
+  gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+}`;
+
+const LINE_FRAGMENT = `
+precision mediump float;
+varying vec3 colour;
+void main() {
+  gl_FragColor = vec4(colour, 1.0);
+}`;
+
+/** Moves of a route that are drawn alike, from a template. */
 class MoveMesh {
-  constructor({ heightMm, leastPixels, lift = 0, shade = 1, flat = false }) {
+  constructor({ heightMm, leastPixels, template, lift = 0, shade = 1 }) {
+    this.template = template;
     this.material = new THREE.RawShaderMaterial({
       vertexShader: BEAD_VERTEX,
       fragmentShader: BEAD_FRAGMENT,
@@ -80,73 +103,128 @@ class MoveMesh {
         shade: { value: shade },
       },
     });
-    this.templates = flat ? [STRIP] : [ROOF, STRIP];
-    this.geometries = [];
-    this.mesh = null;
   }
 
   /** Takes what a route keeps of each move. */
   setMoves(moves) {
-    this.dispose();
-    const count = moves.length / STRIDE;
+    this.moves = moves;
     // A buffer of no length cannot be bound.
-    const array = count > 0 ? moves : new Float32Array(STRIDE);
-    this.count = count;
-    this.buffer = new THREE.InstancedInterleavedBuffer(array, STRIDE, 1);
-    this.setTints(new Uint8Array(4 * count));
-    this.geometries = this.templates.map((template) => this.geometryOf(template));
-    this.mesh = new THREE.Mesh(this.geometries[0], this.material);
+    const array = moves.length > 0 ? moves : new Float32Array(STRIDE);
+    const buffer = new THREE.InstancedInterleavedBuffer(array, STRIDE, 1);
+    const count = array.length / STRIDE;
+    this.tints = new THREE.InstancedInterleavedBuffer(new Uint8Array(4 * count), 4, 1);
+    this.geometry = new THREE.InstancedBufferGeometry();
+    this.geometry.setIndex(this.template.triangles.flat());
+    const interleaved = (name, from, size, normalized) =>
+      this.geometry.setAttribute(
+        name, new THREE.InterleavedBufferAttribute(from, size, 0, normalized),
+      );
+    this.geometry.setAttribute(
+      "position",
+      new THREE.BufferAttribute(new Float32Array(this.template.corners.flat()), 3),
+    );
+    interleaved("path", buffer, 4, false);
+    interleaved("size", buffer, 2, false);
+    interleaved("tint", this.tints, 4, true);
+    this.mesh = new THREE.Mesh(this.geometry, this.material);
     this.mesh.frustumCulled = false;
-    this.draw(0, count);
+    this.draw(0, moves.length / STRIDE);
     return this.mesh;
   }
 
   /** Colours, four bytes a move. */
   setTints(tints) {
-    const array = tints.length > 0 ? tints : new Uint8Array(4);
-    if (this.tintBuffer && this.tintBuffer.array.length === array.length) {
-      this.tintBuffer.array.set(array);
-      this.tintBuffer.needsUpdate = true;
-    } else {
-      this.tintBuffer = new THREE.InstancedInterleavedBuffer(array, 4, 1);
-    }
-  }
-
-  geometryOf(template) {
-    const geometry = new THREE.InstancedBufferGeometry();
-    geometry.setIndex(template.triangles.flat());
-    geometry.setAttribute(
-      "position",
-      new THREE.BufferAttribute(new Float32Array(template.corners.flat()), 3),
-    );
-    geometry.setAttribute("path", new THREE.InterleavedBufferAttribute(this.buffer, 4, 0));
-    geometry.setAttribute("size", new THREE.InterleavedBufferAttribute(this.buffer, 2, 4));
-    geometry.setAttribute("tint", new THREE.InterleavedBufferAttribute(this.tintBuffer, 4, 0, true));
-    return geometry;
+    this.tints.array.set(tints);
+    this.tints.needsUpdate = true;
   }
 
   /** Shows moves from `first` up to, not including, `last`. Nothing is sent to the card. */
   draw(first, last) {
     this.first = first;
     this.last = Math.max(first, last);
-    for (const geometry of this.geometries) {
-      geometry.attributes.path.offset = STRIDE * first;
-      geometry.attributes.size.offset = STRIDE * first + 4;
-      geometry.attributes.tint.offset = 4 * first;
-      geometry.maxInstancedCount = this.last - first;
-    }
-    if (this.mesh) this.mesh.visible = this.last > first;
+    this.drawPart(first, this.last);
   }
 
-  /** Chooses the template: the coarse one while many moves are in motion. */
-  setCoarse(coarse) {
-    if (this.mesh) this.mesh.geometry = this.geometries[coarse ? this.geometries.length - 1 : 0];
+  /** Shows but a part of them. */
+  drawPart(first, last) {
+    const { path, size, tint } = this.geometry.attributes;
+    path.offset = STRIDE * first;
+    size.offset = STRIDE * first + 4;
+    tint.offset = 4 * first;
+    this.geometry.maxInstancedCount = last - first;
+    this.mesh.visible = last > first;
   }
 
   dispose() {
-    for (const geometry of this.geometries) geometry.dispose();
-    this.geometries = [];
-    this.tintBuffer = null;
+    this.geometry.dispose();
+  }
+}
+
+/** Beads: like roofs, or as lines where these are too many for the machine. */
+class BeadMesh extends MoveMesh {
+  constructor(heightMm) {
+    super({ heightMm, leastPixels: 0.45, template: ROOF });
+    this.lines = null;
+    this.group = new THREE.Group();
+  }
+
+  setMoves(moves) {
+    this.group.add(super.setMoves(moves));
+    return this.group;
+  }
+
+  setTints(tints) {
+    super.setTints(tints);
+    if (this.lines) this.tintLines();
+  }
+
+  drawPart(first, last, coarse = false) {
+    super.drawPart(first, coarse ? first : last);
+    if (coarse && !this.lines) this.makeLines();
+    if (!this.lines) return;
+    this.lines.visible = coarse && last > first;
+    this.lines.geometry.setDrawRange(2 * first, 2 * (last - first));
+    this.lines.material.uniforms.fadeBelow.value = this.material.uniforms.fadeBelow.value;
+  }
+
+  /** Two ends for each move, apart from the template's arrays; made when first needed. */
+  makeLines() {
+    const count = this.moves.length / STRIDE;
+    const ends = new Float32Array(6 * count);
+    for (let i = 0, j = 0; j < ends.length; i += STRIDE, j += 6) {
+      ends[j] = this.moves[i];
+      ends[j + 1] = this.moves[i + 1];
+      ends[j + 3] = this.moves[i + 2];
+      ends[j + 4] = this.moves[i + 3];
+      ends[j + 2] = ends[j + 5] = this.moves[i + 4];
+    }
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute("position", new THREE.BufferAttribute(ends, 3));
+    geometry.setAttribute("tint", new THREE.BufferAttribute(new Uint8Array(8 * count), 4, true));
+    this.lines = new THREE.LineSegments(
+      geometry,
+      new THREE.RawShaderMaterial({
+        vertexShader: LINE_VERTEX,
+        fragmentShader: LINE_FRAGMENT,
+        uniforms: { fadeBelow: { value: 0 } },
+      }),
+    );
+    this.lines.frustumCulled = false;
+    this.group.add(this.lines);
+    this.tintLines();
+  }
+
+  tintLines() {
+    const { tint } = this.lines.geometry.attributes;
+    const from = new Uint32Array(this.tints.array.buffer);
+    const to = new Uint32Array(tint.array.buffer);
+    for (let i = 0; i < from.length; i++) to[2 * i] = to[2 * i + 1] = from[i];
+    tint.needsUpdate = true;
+  }
+
+  dispose() {
+    super.dispose();
+    if (this.lines) this.lines.geometry.dispose();
   }
 }
 

@@ -1,9 +1,10 @@
 // The picture: one canvas, a pane for each contender, one camera for all panes.
 
 const VIEW_ANGLE = 28; // degrees; narrow, so that heights hardly shift what lies below
-const COARSE_FROM = 150000; // moves that are drawn more simply while they are in motion
+const FRAME_MS = 30; // what drawing may take at a time; what is left follows in the next frames
+const FIRST_PART = 4000; // beads of the first frame, before it is known how fast the machine is
+const LINES_FROM_MS = 600; // beads that would take longer than this are drawn as lines
 const CROWD = 100; // more marks than these are drawn smaller
-const REST_MS = 220;
 const TRAVEL_LIFT_MM = 0.06;
 
 /** What a pane shows of one route. */
@@ -11,16 +12,16 @@ class Pane {
   constructor(route, heightMm, outlines) {
     this.route = route;
     this.heightMm = heightMm;
-    this.whole = new THREE.Scene();
-    this.scene = new THREE.Group(); // may stand elsewhere than its coordinates say
-    this.whole.add(this.scene);
-    this.beads = new MoveMesh({ heightMm, leastPixels: 0.45 });
+    this.beadScene = new THREE.Scene(); // drawn in parts
+    this.scene = new THREE.Scene(); // all else
+    this.ground = new THREE.Scene(); // stays where it is when the route is moved
+    this.beads = new BeadMesh(heightMm);
     this.travels = new MoveMesh({
-      heightMm: 0, leastPixels: 0.8, lift: TRAVEL_LIFT_MM, shade: 0, flat: true,
+      heightMm: 0, leastPixels: 0.8, lift: TRAVEL_LIFT_MM, shade: 0, template: STRIP,
     });
     this.retractions = new Marks({ colour: RETRACTION_COLOUR });
     this.head = new Marks({ colour: "#ffffff", ring: true });
-    this.scene.add(this.beads.setMoves(route.segments));
+    this.beadScene.add(this.beads.setMoves(route.segments));
     this.scene.add(this.travels.setMoves(route.travels));
     this.scene.add(this.retractions.setPlaces(this.retractionPlaces()));
     this.scene.add(this.head.setPlaces(new Float32Array(3)));
@@ -35,7 +36,8 @@ class Pane {
     const [own, wanted] = [this.route.partBounds(), other.partBounds()];
     if (!own || !wanted) return [0, 0];
     const [from, to] = [middle(own), middle(wanted)];
-    this.scene.position.set(to[0] - from[0], to[1] - from[1], 0);
+    for (const scene of [this.scene, this.beadScene])
+      scene.position.set(to[0] - from[0], to[1] - from[1], 0);
     return [to[0] - from[0], to[1] - from[1]];
   }
 
@@ -117,10 +119,6 @@ class Pane {
     this.scene.add(this.outlineLines);
   }
 
-  get moves() {
-    return this.beads.last - this.beads.first + this.travels.last - this.travels.first;
-  }
-
   dispose() {
     for (const part of [this.beads, this.travels, this.retractions, this.head]) part.dispose();
     this.setOutline(-1);
@@ -142,7 +140,9 @@ function firstNotBelow(sorted, value) {
 class Stage {
   constructor(canvas) {
     this.canvas = canvas;
-    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true });
+    this.renderer = new THREE.WebGLRenderer({
+      canvas, antialias: true, preserveDrawingBuffer: true,
+    });
     this.renderer.setScissorTest(true);
     this.renderer.autoClear = false;
     this.background = new THREE.Color("#f6f7f8");
@@ -152,8 +152,10 @@ class Stage {
     this.controls.enableKeys = false;
     this.controls.screenSpacePanning = true;
     this.controls.zoomSpeed = 1.3;
-    this.controls.addEventListener("change", () => this.request(true));
+    this.controls.addEventListener("change", () => this.request());
     this.panes = [];
+    this.forgetSpeeds();
+    this.complete = false; // whether all that is to be seen has been drawn
     this.box = { low: [0, 0, 0], high: [10, 10, 10] };
     this.pending = false;
     new ResizeObserver(() => this.resize()).observe(canvas.parentElement);
@@ -162,13 +164,14 @@ class Stage {
   setPanes(panes) {
     for (const pane of this.panes) pane.dispose();
     this.panes = panes;
+    this.forgetSpeeds();
     const boxes = panes.map((pane) => pane.bounds()).filter(Boolean);
     if (boxes.length > 0)
       this.box = {
         low: [0, 1, 2].map((i) => Math.min(...boxes.map((box) => box.low[i]))),
         high: [0, 1, 2].map((i) => Math.max(...boxes.map((box) => box.high[i]))),
       };
-    for (const pane of panes) pane.whole.add(this.plate());
+    for (const pane of panes) pane.ground.add(this.plate());
     this.request();
   }
 
@@ -243,50 +246,117 @@ class Stage {
     this.request();
   }
 
-  /** Draws soon; what is in motion is drawn more simply if there is much of it. */
-  request(moving = false) {
-    if (moving) {
-      this.movingUntil = performance.now() + REST_MS;
-      clearTimeout(this.rest);
-      this.rest = setTimeout(() => this.request(), REST_MS + 20);
-    }
-    if (this.pending) return;
-    this.pending = true;
-    requestAnimationFrame(() => this.render());
+  /** Draws anew, soon. */
+  request() {
+    this.complete = false;
+    this.restart = true;
+    this.schedule();
   }
 
+  schedule() {
+    if (this.pending) return;
+    this.pending = true;
+    requestAnimationFrame(() => {
+      this.pending = false;
+      this.render();
+    });
+  }
+
+  /**
+   * Draws what the time of a frame allows, the uppermost beads first. The next frames add the others
+   * below, unless there is something new to draw by then.
+   */
   render() {
-    this.pending = false;
+    if (this.canvas.clientWidth === 0 || this.canvas.clientHeight === 0) return;
+    if (this.restart) {
+      this.restart = false;
+      this.begin();
+    }
+    const begin = performance.now();
+    const kind = this.kindOfBeads();
+    const known = this.msPerBead[kind];
+    const room = known > 0 ? Math.max(500, FRAME_MS / known) : FIRST_PART;
+    let drawn = 0;
+    this.panes.forEach((pane, i) => {
+      const { beads } = pane;
+      const first = Math.max(beads.first, Math.floor(pane.undrawn - room / this.panes.length));
+      beads.drawPart(first, pane.undrawn, kind === "line");
+      drawn += pane.undrawn - first;
+      pane.undrawn = first;
+      this.aim(i);
+      this.renderer.render(pane.beadScene, this.camera);
+    });
+    const left = this.undrawn();
+    if (drawn + left > FIRST_PART) this.measure(kind, drawn, begin);
+    this.complete = left === 0;
+    if (!this.complete) this.schedule();
+  }
+
+  /** An empty canvas, and on it all but the beads. */
+  begin() {
+    const { renderer, camera } = this;
     const width = this.canvas.clientWidth;
     const height = this.canvas.clientHeight;
-    if (width === 0 || height === 0) return;
-    const { renderer, camera } = this;
-    const columns = Math.max(1, this.panes.length);
-    const paneWidth = width / columns;
     const size = Math.hypot(...this.box.low.map((v, i) => this.box.high[i] - v));
     const away = camera.position.distanceTo(this.controls.target);
     camera.near = Math.max(0.01, (away - size) / 20, away / 400);
     camera.far = away + 4 * size + 100;
-    camera.aspect = paneWidth / height;
+    camera.aspect = this.paneAspect();
     camera.updateProjectionMatrix();
-    const moves = this.panes.reduce((sum, pane) => sum + pane.moves, 0);
-    const coarse = moves > COARSE_FROM && performance.now() < this.movingUntil;
     const pixel = (2 * Math.tan((VIEW_ANGLE * Math.PI) / 360)) / height;
     renderer.setScissor(0, 0, width, height);
     renderer.setViewport(0, 0, width, height);
     renderer.setClearColor(this.background);
     renderer.clear();
     this.panes.forEach((pane, i) => {
-      pane.beads.setCoarse(coarse);
       pane.beads.material.uniforms.pixel.value = pixel;
       pane.travels.material.uniforms.pixel.value = pixel;
       const few = pane.retractions.shown <= CROWD;
       pane.retractions.setPixels((few ? 11 : 7) * renderer.getPixelRatio());
       pane.head.setPixels(17 * renderer.getPixelRatio());
-      renderer.setViewport(i * paneWidth, 0, paneWidth, height);
-      renderer.setScissor(i * paneWidth, 0, paneWidth, height);
-      renderer.render(pane.whole, camera);
+      pane.undrawn = pane.beads.last;
+      this.aim(i);
+      renderer.render(pane.ground, camera);
+      renderer.render(pane.scene, camera);
     });
-    this.frames = (this.frames || 0) + 1;
+  }
+
+  /** Draws into one of the panes from here on. */
+  aim(number) {
+    const width = this.canvas.clientWidth / this.panes.length;
+    const height = this.canvas.clientHeight;
+    this.renderer.setViewport(number * width, 0, width, height);
+    this.renderer.setScissor(number * width, 0, width, height);
+  }
+
+  /** Beads that the current picture still lacks. */
+  undrawn() {
+    return this.panes.reduce((sum, pane) => sum + pane.undrawn - pane.beads.first, 0);
+  }
+
+  kindOfBeads() {
+    const total = this.panes.reduce((sum, { beads }) => sum + beads.last - beads.first, 0);
+    return total * this.msPerBead.roof > LINES_FROM_MS ? "line" : "roof";
+  }
+
+  /** Milliseconds a bead takes, as measured; 0 where that is not known. */
+  forgetSpeeds() {
+    this.msPerBead = { roof: 0, line: 0 };
+    this.warm = { roof: false, line: false };
+  }
+
+  /** Learns how fast the machine draws: waits for it to be done. */
+  measure(kind, beads, begin) {
+    if (beads === 0) return;
+    if (!this.warm[kind]) {
+      // The first time the arrays go to the card as well.
+      this.warm[kind] = true;
+      return;
+    }
+    const gl = this.renderer.getContext();
+    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
+    const now = (performance.now() - begin) / beads;
+    const before = this.msPerBead[kind];
+    this.msPerBead[kind] = Math.max(1e-7, before > 0 ? (before + now) / 2 : now);
   }
 }

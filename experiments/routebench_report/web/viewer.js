@@ -174,13 +174,13 @@ class Viewer {
     if (state.single) state.from = state.level;
     else state.from = Math.min(from === undefined ? state.from : from, state.level);
     state.move = null;
-    this.update(true);
+    this.update();
   }
 
   setFrom(level) {
     this.state.from = Math.max(0, Math.min(level, this.state.level));
     this.state.single = this.state.from === this.state.level && this.state.single;
-    this.update(true);
+    this.update();
   }
 
   setSingle(single) {
@@ -200,7 +200,7 @@ class Viewer {
   setMove(move) {
     const most = this.moveCount();
     this.state.move = move >= most ? null : Math.max(0, move);
-    this.update(true);
+    this.update();
   }
 
   /** The share of the current layer's moves that is shown. */
@@ -257,7 +257,7 @@ class Viewer {
   }
 
   /** Puts the state on the stage and tells the page. */
-  update(moving = false) {
+  update() {
     const { state } = this;
     const level = this.levels[state.level];
     const share = this.moveShare();
@@ -268,7 +268,7 @@ class Viewer {
       const { from, to, moves } = side.shown;
       side.pane.show(from, to, moves, state.shown, whole);
     });
-    this.stage.request(moving);
+    this.stage.request();
     this.onChange();
   }
 
