@@ -9,6 +9,7 @@ import tempfile
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
+from urllib.parse import urlencode
 
 from routebench_plots import style, summary
 from routebench_plots.figures import Figure, chosen_metrics, figures
@@ -132,22 +133,36 @@ def _matrices(results: Results) -> Iterator[str]:
             yield f'<tr><th scope="row">{html.escape(model.label)}</th>'
             for contender in results.contenders:
                 slot = results.slot(setting, model, contender)
-                yield f"<td>{_outcomes(slot)}</td>"
+                link = _link(results, setting, model, contender)
+                yield f"<td>{_outcomes(slot, link)}</td>"
             yield "</tr>"
         yield "</tbody></table></div>"
 
 
-def _outcomes(slot: Slot) -> str:
+def _link(
+    results: Results, setting: Item, model: Item, contender: Item
+) -> str:
+    """The address that shows a slot in the viewer; `web/place.js` reads it."""
+    wishes = {"model": model.label, "a": contender.label}
+    if len(results.settings) > 1:
+        wishes["setting"] = setting.label
+    return f"#{urlencode(wishes)}"
+
+
+def _outcomes(slot: Slot, link: str) -> str:
     """The outcomes of a slot's cells, and why those not valid are not."""
     several = slot.outcomes.total() > 1
     parts = []
     for outcome, count in sorted(slot.outcomes.items()):
         words = style.outcome_look(outcome).words
         times = f" ×{count}" if several else ""
-        parts.append(
+        shown = (
             f'<span class="outcome {html.escape(outcome)}">'
             f"{html.escape(words)}{times}</span>"
         )
+        if slot.cells:
+            shown = f'<a href="{html.escape(link)}">{shown}</a>'
+        parts.append(shown)
     reasons = dict.fromkeys(c.reason for c in slot.cells if c.reason)
     parts += [
         f'<span class="reason">{html.escape(reason)}</span>'
