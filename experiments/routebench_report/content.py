@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -89,6 +89,8 @@ def gcode_content(name: str, text: str) -> Content:
             "label": label,
             "unit": unit,
             "factor": 1,
+            "layer_unit": unit,
+            "layer_factor": 1,
             "better": better,
             "meaning": meaning,
             "of_interest": True,
@@ -115,7 +117,11 @@ def results_content(
         for item in results.contenders
     ]
     data["settings"] = _settings(results)
-    data["metrics"] = [_metric(results, m) for m in results.metrics]
+    largest = _largest_of_a_layer(results)
+    data["metrics"] = [
+        _metric(results, metric, [largest.get(metric.name, 0.0)])
+        for metric in results.metrics
+    ]
     _add_outlines(results, content)
     totals = _totals(results)
     layer_counts = {
@@ -168,22 +174,39 @@ def _object(
     return value if isinstance(value, dict) else {}
 
 
-def _metric(results: Results, metric: Metric) -> dict[str, Any]:
+def _metric(
+    results: Results, metric: Metric, layer_values: Iterable[float]
+) -> dict[str, Any]:
+    """A metric with a unit for totals and one for single layers."""
     values = (
         value.high
         for setting in results.settings
         for value in results.all_values(setting, metric)
     )
     scale = scale_for(metric, values)
+    layer_scale = scale_for(metric, layer_values)
     return {
         "name": metric.name,
         "label": metric.label,
         "unit": pretty_unit(scale.unit),
         "factor": scale.factor,
+        "layer_unit": pretty_unit(layer_scale.unit),
+        "layer_factor": layer_scale.factor,
         "better": metric.better,
         "meaning": metric.meaning,
         "of_interest": metric.name in METRICS_OF_INTEREST,
     }
+
+
+def _largest_of_a_layer(results: Results) -> dict[str, float]:
+    """The largest value that any layer has of each metric."""
+    largest: dict[str, float] = {}
+    for row in results.records("SELECT * FROM layer_score"):
+        for name, value in row.items():
+            number = _finite(value)
+            if number is not None:
+                largest[name] = max(largest.get(name, 0.0), number)
+    return largest
 
 
 def _totals(results: Results) -> dict[int, dict[str, float | None]]:

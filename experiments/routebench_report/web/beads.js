@@ -8,7 +8,7 @@ uniform mat4 modelViewMatrix;
 uniform mat4 projectionMatrix;
 uniform float height;       // of a bead, mm
 uniform float pixel;        // mm that a pixel spans at a distance of 1 mm
-uniform float leastPixels;  // half of the width that is always seen
+uniform float leastPixels;  // half of the width that is always seen, more for what is opaque
 uniform float lift;         // mm above the layer
 uniform float fadeBelow;    // what lies below this height steps back
 attribute vec3 position;    // of a corner: end, side, beyond the end
@@ -28,7 +28,7 @@ void main() {
   vec2 across = vec2(-along.y, along.x);
   vec2 centre = mix(path.xy, path.zw, position.x);
   float away = -(modelViewMatrix * vec4(centre, size.x, 1.0)).z;
-  float half_width = max(size.y * 0.5, leastPixels * pixel * away);
+  float half_width = max(size.y * 0.5, leastPixels * (0.4 + tint.a) * pixel * away);
   vec2 outward = across * position.y + along * position.z;
   float edge = abs(position.y) + abs(position.z) > 0.0 ? 1.0 : 0.0;
   vec3 place = vec3(centre + outward * half_width, size.x - edge * height * 0.5 + lift);
@@ -163,7 +163,7 @@ class MoveMesh {
 /** Beads: like roofs, or as lines where these are too many for the machine. */
 class BeadMesh extends MoveMesh {
   constructor(heightMm) {
-    super({ heightMm, leastPixels: 0.45, template: ROOF });
+    super({ heightMm, leastPixels: 0.32, template: ROOF });
     this.lines = null;
     this.group = new THREE.Group();
   }
@@ -214,11 +214,21 @@ class BeadMesh extends MoveMesh {
     this.tintLines();
   }
 
+  /** Lines have no sides that light could fall on: how they run decides how bright they are. */
   tintLines() {
     const { tint } = this.lines.geometry.attributes;
-    const from = new Uint32Array(this.tints.array.buffer);
-    const to = new Uint32Array(tint.array.buffer);
-    for (let i = 0; i < from.length; i++) to[2 * i] = to[2 * i + 1] = from[i];
+    const from = this.tints.array;
+    const { moves } = this;
+    for (let move = 0, i = 0, j = 0; i < from.length; move += STRIDE, i += 4, j += 8) {
+      const dx = moves[move + 2] - moves[move];
+      const dy = moves[move + 3] - moves[move + 1];
+      const length = Math.sqrt(dx * dx + dy * dy) || 1;
+      const light = 0.62 + (0.4 * Math.abs(0.87 * dx - 0.5 * dy)) / length;
+      for (let channel = 0; channel < 3; channel++)
+        tint.array[j + channel] = tint.array[j + 4 + channel] = Math.min(
+          255, light * from[i + channel],
+        );
+    }
     tint.needsUpdate = true;
   }
 

@@ -34,9 +34,7 @@ class Controls {
     fill(this.get("model"), experiment.shortNames.map((name, i) => [i, name]));
     fill(this.get("setting"), experiment.settings.map(({ name }, i) => [i, name || "default"]));
     fill(this.get("colour"), MODES.map((mode) => [mode, MODE_WORDS[mode]]));
-    fill(this.get("metric"), experiment.metrics.map(({ label, unit }, i) => [
-      i, unit ? `${label} [${unit}]` : label,
-    ]));
+    fill(this.get("metric"), experiment.metrics.map(({ label }, i) => [i, label]));
     const load = (change) => this.busy(() => viewer.choose(change));
     this.on("model", "change", (e) => load({ model: Number(e.target.value), seed: null }));
     this.on("setting", "change", (e) => load({ setting: Number(e.target.value), seed: null }));

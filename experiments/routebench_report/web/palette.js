@@ -72,7 +72,8 @@ class Palette {
   /** Travels and crossings; what is switched off is transparent. */
   travelTints(route, shown) {
     const tints = new Uint8Array(4 * route.travelCount);
-    const plain = [...rgbOf(this.colours.travel), shown.travels ? 255 : 0];
+    // Opacity decides on the width, too; see BEAD_VERTEX.
+    const plain = [...rgbOf(this.colours.travel), shown.travels ? 128 : 0];
     const crossing = [...rgbOf(CROSSING_COLOUR), shown.crossings ? 255 : 0];
     for (let t = 0; t < route.travelCount; t++)
       tints.set(shown.crossings && route.travelFlags[t] & CROSSING ? crossing : plain, 4 * t);

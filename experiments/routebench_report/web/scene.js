@@ -17,7 +17,7 @@ class Pane {
     this.ground = new THREE.Scene(); // stays where it is when the route is moved
     this.beads = new BeadMesh(heightMm);
     this.travels = new MoveMesh({
-      heightMm: 0, leastPixels: 0.8, lift: TRAVEL_LIFT_MM, shade: 0, template: STRIP,
+      heightMm: 0, leastPixels: 0.9, lift: TRAVEL_LIFT_MM, shade: 0, template: STRIP,
     });
     this.retractions = new Marks({ colour: RETRACTION_COLOUR });
     this.head = new Marks({ colour: "#ffffff", ring: true });

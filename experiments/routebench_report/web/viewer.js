@@ -377,8 +377,8 @@ class Viewer {
   /** A value of the current metric with its unit. */
   amount(value) {
     const metric = this.experiment.metrics[this.state.metric];
-    const unit = metric.unit ? ` ${metric.unit}` : "";
-    return `${formatNumber(value / metric.factor)}${unit}`;
+    const unit = metric.layer_unit ? ` ${metric.layer_unit}` : "";
+    return `${formatNumber(value / metric.layer_factor)}${unit}`;
   }
 
   say(message) {
