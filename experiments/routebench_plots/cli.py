@@ -5,76 +5,31 @@ from __future__ import annotations
 import argparse
 import os
 import shutil
-import signal
-import sys
 import tempfile
-import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import NoReturn
 
+from .console import EXIT_DONE, Parser, guarded
 from .errors import PlotError
 from .figures import chosen_metrics, draw_all
-from .naming import printable
 from .results import Results, find_database
 from .sheet import FORMATS
+from .terminal import print_paths, progress
 
-EXIT_DONE = 0
-EXIT_BAD_INPUT = 2
-EXIT_INTERNAL = 3
-EXIT_INTERRUPTED = 128 + signal.SIGINT
 _DEFAULT_FORMATS = "png,svg"
 _INDEX = ".routebench-plots"
 """Names of the files of the last time, so that none of them goes stale."""
 
 
-class Parser(argparse.ArgumentParser):
-    """A parser whose complaints are one line, like all others."""
-
-    def error(self, message: str) -> NoReturn:
-        raise PlotError(f"{message} (see {self.prog} --help)")
-
-
 def main(arguments: Sequence[str] | None = None) -> int:
     """Plots, prints the files written, and returns the exit code."""
-    return carry_out(lambda: _run(arguments))
 
+    def work() -> int:
+        print_paths(_run(arguments))
+        return EXIT_DONE
 
-def carry_out(work: Callable[[], Sequence[Path]]) -> int:
-    """Does a command's work, prints the files that it wrote.
-
-    Returns the exit code. Whatever goes wrong is told in one line.
-    """
-    signal.signal(signal.SIGTERM, _exit_on_signal)
-    try:
-        paths = work()
-    except PlotError as error:
-        return _complain(str(error), EXIT_BAD_INPUT)
-    except OSError as error:
-        return _complain(f"{error.filename}: {error.strerror}", EXIT_BAD_INPUT)
-    except KeyboardInterrupt:
-        return _complain("interrupted, nothing written", EXIT_INTERRUPTED)
-    except Exception as error:  # the last resort: still one line
-        return _complain(f"internal error: {error!r}", EXIT_INTERNAL)
-    _print_paths(paths)
-    return EXIT_DONE
-
-
-def _complain(message: str, exit_code: int) -> int:
-    print(f"routebench: {printable(message)}", file=sys.stderr)
-    return exit_code
-
-
-def _print_paths(paths: Sequence[Path]) -> None:
-    """One a line, byte for byte as the system has them."""
-    try:
-        for path in paths:
-            sys.stdout.buffer.write(os.fsencode(path) + b"\n")
-        sys.stdout.flush()
-    except BrokenPipeError:
-        # Whoever asked has read enough; Python would complain at its end.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    return guarded(work, "interrupted, nothing written")
 
 
 def _run(arguments: Sequence[str] | None) -> list[Path]:
@@ -114,29 +69,6 @@ def _formats(text: str) -> list[str]:
 
 
 @contextmanager
-def progress(
-    words: str = "drew {} of {} figures",
-) -> Iterator[Callable[[int, int], None]]:
-    """A line on stderr that comes and goes; nothing if no one looks on."""
-    start = time.monotonic()
-
-    def report(done: int, total: int) -> None:
-        left = (time.monotonic() - start) / done * (total - done)
-        _show(f"{words.format(done, total)}, about {left:.0f} s left")
-
-    try:
-        yield report
-    finally:
-        _show("")
-
-
-def _show(text: str) -> None:
-    """Puts text in the place of the terminal's last line."""
-    if sys.stderr.isatty():
-        print(f"\r\033[K{text}", end="", file=sys.stderr, flush=True)
-
-
-@contextmanager
 def _staging(out: Path) -> Iterator[Path]:
     """A folder beside `out` that is gone afterwards, whatever happens."""
     places = [out, *out.absolute().parents]
@@ -168,8 +100,3 @@ def _publish(folder: Path, out: Path, written: Sequence[str]) -> None:
         if Path(name).name == name:
             (out / name).unlink(missing_ok=True)
     index.write_text("\n".join(written) + "\n", encoding="utf-8")
-
-
-def _exit_on_signal(number: int, _: object) -> NoReturn:
-    """Lets `finally` run: nothing half-written stays behind."""
-    sys.exit(128 + number)

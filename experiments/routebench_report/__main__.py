@@ -3,10 +3,9 @@
 import sys
 from pathlib import Path
 
-if not __package__:
-    sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
-
-from routebench_plots.__main__ import start  # noqa: E402
-
 if __name__ == "__main__":
-    sys.exit(start("routebench_report"))
+    if not __package__:
+        sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
+    from routebench_plots.launch import launch
+
+    sys.exit(launch("routebench_report.cli", ("numpy", "matplotlib")))

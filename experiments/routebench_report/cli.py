@@ -10,10 +10,11 @@ import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
-from routebench_plots.cli import Parser, carry_out, progress
+from routebench_plots.console import EXIT_DONE, Parser, guarded
 from routebench_plots.errors import PlotError
 from routebench_plots.naming import printable
 from routebench_plots.results import DATABASE_NAME, Results, find_database
+from routebench_plots.terminal import print_paths, progress
 
 from . import content, sections
 from .page import page, viewer_section
@@ -24,7 +25,12 @@ _SCREENS = ("DISPLAY", "WAYLAND_DISPLAY")
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Makes a page, prints where it is, and returns the exit code."""
-    return carry_out(lambda: [_run(arguments)])
+
+    def work() -> int:
+        print_paths([_run(arguments)])
+        return EXIT_DONE
+
+    return guarded(work, "interrupted, nothing written")
 
 
 def _run(arguments: Sequence[str] | None) -> Path:
