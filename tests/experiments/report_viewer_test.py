@@ -429,6 +429,19 @@ class ViewerTest(BrowserTestCase):
         if name == "linked":
             self.assertEqual(scores[self.layer()], max(s or 0 for s in scores))
 
+    def test_wheel_scrolls_the_page_until_the_picture_is_clicked(self) -> None:
+        self.open(self.page)
+        turn = (
+            "document.getElementById('v-canvas').dispatchEvent("
+            "new WheelEvent('wheel', {deltaY: -300, bubbles: true, cancelable: true}))"
+        )
+        before = self.viewer("stage.cameraPlace()")
+        self.assertTrue(self.browser.value(turn), "the page may scroll")
+        self.assertEqual(self.viewer("stage.cameraPlace()"), before)
+        self.browser.click(CANVAS)
+        self.assertFalse(self.browser.value(turn), "the picture has taken it")
+        self.assertNotEqual(self.viewer("stage.cameraPlace()"), before)
+
     def test_keys_are_listed(self) -> None:
         self.open(self.page)
         self.key("?")

@@ -17,7 +17,7 @@ class Controls {
     this.wireButtons();
     this.wireFiles();
     (wholePage ? document : this.root).addEventListener("keydown", (event) => this.key(event));
-    this.get("canvas").addEventListener("pointerdown", () => this.get("canvas").focus());
+    this.wireCanvas(wholePage);
     this.stage.controls.addEventListener("end", () => this.refresh());
   }
 
@@ -27,6 +27,16 @@ class Controls {
 
   on(name, event, act) {
     this.get(name).addEventListener(event, act);
+  }
+
+  /** Within a longer page the wheel scrolls that, until the picture has been clicked. */
+  wireCanvas(wholePage) {
+    const canvas = this.get("canvas");
+    canvas.addEventListener("pointerdown", () => canvas.focus());
+    const held = (event) => {
+      if (!wholePage && document.activeElement !== canvas) event.stopPropagation();
+    };
+    canvas.parentElement.addEventListener("wheel", held, { capture: true, passive: true });
   }
 
   wireSelects() {
