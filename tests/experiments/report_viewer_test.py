@@ -70,6 +70,7 @@ G0 Z0.4
 ;TYPE:Skirt/Brim
 G1 X10 Y0 E1
 G2 X20 Y0 R5 E1
+G2 X20 Y0 I-5 E2
 M82
 G92 E5
 G1 X20 Y1 E5.5
@@ -85,7 +86,7 @@ FIRST_LAYER = {
     "crossings": 0,
 }
 SECOND_LAYER = {
-    "extrudeMm": 10 + 5 * math.pi + 1,
+    "extrudeMm": 10 + 5 * math.pi + 10 * math.pi + 1,
     "travelMm": 0,
     "travels": 0,
     "retractions": 0,
@@ -490,13 +491,20 @@ class ViewerTest(BrowserTestCase):
         tallies = self.browser.run(
             "const r = routebench.readGcode('x', arguments[0]);"
             "return [r.tally(0), r.tally(1), r.kinds.map((_, k) => r.segmentKind.filter(s => s === k).length),"
-            " [...r.segments.slice(-6)], [...new Set(r.segmentSpeed)], r.segments[5]];",
+            " [...r.segments.slice(-6)], [...new Set(r.segmentSpeed)],"
+            " r.bounds(s => r.segmentKind[s] === 0), r.bounds(s => r.segmentKind[s] === 3)];",
             GCODE,
         )
+        # Arcs go round on the side that they are told to: to the right, and up.
+        walls, skirt = tallies[5:]
+        self.assertAlmostEqual(walls["high"][0], 15, delta=0.01)
+        self.assertAlmostEqual(walls["low"][0], 0)
+        self.assertAlmostEqual(skirt["high"][1], 5, delta=0.01)
+        self.assertAlmostEqual(skirt["low"][1], -5, delta=0.01)
         for found, wanted in zip(tallies, (FIRST_LAYER, SECOND_LAYER)):
             for name, value in wanted.items():
                 # Chords of an arc are a little shorter than the arc.
-                self.assertAlmostEqual(found[name], value, delta=0.02, msg=name)
+                self.assertAlmostEqual(found[name], value, delta=0.05, msg=name)
         walls, dense, sparse, other, unknown = tallies[2]
         self.assertGreater(walls, 10)
         self.assertEqual((dense, sparse, unknown), (0, 4, 0))
