@@ -159,7 +159,8 @@ class ReportTest(PageTestCase):
         )
         made.layers(cell, [{"travel_mm": 3.0}])
         made.close()
-        self.assertIn("1 of 1 cells are valid", Outline(self.make("report", str(self.folder))).words)
+        outline = Outline(self.make("report", str(self.folder)))
+        self.assertIn("1 of 1 cells are valid", outline.words)
 
     def test_an_interrupted_page_leaves_the_earlier_one(self) -> None:
         place = self.results(["m"], ["a", "b"])

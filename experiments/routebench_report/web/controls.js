@@ -107,7 +107,8 @@ class Controls {
 
   wireFiles() {
     const cover = this.get("drop");
-    const holdsFiles = (event) => event.dataTransfer && [...event.dataTransfer.types].includes("Files");
+    const holdsFiles = ({ dataTransfer }) =>
+      dataTransfer && [...dataTransfer.types].includes("Files");
     document.addEventListener("dragover", (event) => {
       if (!holdsFiles(event)) return;
       event.preventDefault();
@@ -216,7 +217,8 @@ class Controls {
     if (event.ctrlKey || event.altKey || event.metaKey || this.get("keys").open) return;
     const { target } = event;
     const tag = target.tagName;
-    if (tag === "SELECT" || (tag === "INPUT" && !["range", "checkbox"].includes(target.type))) return;
+    const isText = tag === "INPUT" && !["range", "checkbox"].includes(target.type);
+    if (tag === "SELECT" || isText) return;
     // Sliders, boxes and buttons have their own use for these.
     const ownKeys = tag === "INPUT" && target.type === "range"
       ? ["ArrowUp", "ArrowDown", "ArrowLeft", "ArrowRight", "Home", "End"]
@@ -246,7 +248,7 @@ class Controls {
       case "W": return () => viewer.toWorst(1);
       case "d": return () => viewer.toDifference();
       case "s": return () => viewer.setSingle(!state.single);
-      case "c": return () => viewer.setColour(MODES[(MODES.indexOf(state.colour) + 1) % MODES.length]);
+      case "c": return () => viewer.setColour(nextOf(MODES, state.colour));
       case "x": return () => this.swap();
       case "t": return () => this.look("top");
       case "i": return () => this.look("iso");
@@ -285,12 +287,13 @@ class Controls {
     this.get("swap").disabled = viewer.sides.length < 2;
 
     const last = Math.max(0, levels.length - 1);
+    const lowest = levels[state.from];
     setSlider(this.get("layer"), last, state.level, level ? this.layerWords(level) : "");
-    setSlider(this.get("from"), last, state.from, levels[state.from] ? this.layerWords(levels[state.from]) : "");
+    setSlider(this.get("from"), last, state.from, lowest ? this.layerWords(lowest) : "");
     this.get("layer-text").textContent = level
       ? `${this.layerWords(level)} (${state.level + 1} of ${levels.length})`
       : "none";
-    this.get("from-text").textContent = levels[state.from] ? String(levels[state.from].index) : "";
+    this.get("from-text").textContent = lowest ? String(lowest.index) : "";
     this.get("single").checked = state.single;
     const most = viewer.moveCount();
     const move = state.move === null ? most : state.move;
@@ -349,7 +352,7 @@ class Controls {
     ];
     if (side.route.knowsCrossings) words.push(counted(sum.crossings, "crossing"));
     if (side.moved && Math.hypot(...side.moved) > 0.1)
-      words.push(`shown moved by ${side.moved.map((v) => formatNumber(Number(v.toFixed(1)))).join(", ")} mm`);
+      words.push(`shown moved by ${side.moved.map((v) => v.toFixed(1)).join(", ")} mm`);
     return words.join(" · ");
   }
 
@@ -422,6 +425,10 @@ class Controls {
     const hash = writeLink(this.viewer.link());
     if (hash !== location.hash) history.replaceState(null, "", hash);
   }
+}
+
+function nextOf(list, entry) {
+  return list[(list.indexOf(entry) + 1) % list.length];
 }
 
 function counted(number, noun) {

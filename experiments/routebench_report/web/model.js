@@ -63,7 +63,8 @@ class Experiment {
 /** Files without their folders, where that leaves no two alike. */
 function shortNames(names) {
   const short = names.map((name) => name.replace(/^[^?]*\/(?=[^/?]+(\?|$))/, ""));
-  return names.map((name, i) => (short.indexOf(short[i]) === short.lastIndexOf(short[i]) ? short[i] : name));
+  const isOnly = (name) => short.indexOf(name) === short.lastIndexOf(name);
+  return names.map((name, i) => (isOnly(short[i]) ? short[i] : name));
 }
 
 /** What `make` promises, kept by its key; beyond `most` the oldest is forgotten. */

@@ -90,7 +90,8 @@ class Palette {
       for (const kind of [...used].sort((a, b) => rank(a) - rank(b)))
         entries.push({ colour: this.ofKind(kind), shape: "bead", words: kind });
     } else if (mode === "contender") {
-      for (const { name, colour } of contenders) entries.push({ colour, shape: "bead", words: name });
+      for (const { name, colour } of contenders)
+        entries.push({ colour, shape: "bead", words: name });
     } else if (mode === "order") {
       entries.push({ shape: "ramp", from: "first", to: "last of its layer" });
     } else if (speedRange) {
@@ -100,7 +101,8 @@ class Palette {
       if (low === high) entries.push({ colour: `rgb(${ramp(1)})`, shape: "bead", words });
       else entries.push({ shape: "ramp", from: low, to: words });
     }
-    if (shown.travels) entries.push({ colour: this.colours.travel, shape: "line", words: "travel" });
+    if (shown.travels)
+      entries.push({ colour: this.colours.travel, shape: "line", words: "travel" });
     if (shown.crossings && routes.some((route) => route.knowsCrossings))
       entries.push({ colour: CROSSING_COLOUR, shape: "thick", words: "crossing: leaves the part" });
     if (shown.retractions)

@@ -1,7 +1,8 @@
 // Deep links: what the viewer shows, as the part of the address after '#'.
 
 const LINK_KEYS = [
-  "model", "setting", "a", "b", "seed", "layer", "from", "move", "colour", "metric", "hide", "camera",
+  "model", "setting", "a", "b", "seed", "layer", "from", "move", "colour", "metric", "hide",
+  "camera",
 ];
 
 /** What an address asks the viewer for; null if it means something else, such as a heading. */

@@ -263,8 +263,8 @@ class Stage {
   }
 
   /**
-   * Draws what the time of a frame allows, the uppermost beads first. The next frames add the others
-   * below, unless there is something new to draw by then.
+   * Draws what the time of a frame allows, the uppermost beads first. The next frames add the
+   * others below, unless there is something new to draw by then.
    */
   render() {
     if (this.canvas.clientWidth === 0 || this.canvas.clientHeight === 0) return;

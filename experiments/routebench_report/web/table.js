@@ -83,7 +83,8 @@ class CellTable {
     if (sorted) head.setAttribute("aria-sort", this.sorted.down ? "descending" : "ascending");
     const button = element("button", { type: "button", textContent: column.title });
     if (column.hint) button.title = column.hint;
-    if (column.unit) button.append(element("span", { className: "unit", textContent: ` ${column.unit}` }));
+    if (column.unit)
+      button.append(element("span", { className: "unit", textContent: ` ${column.unit}` }));
     button.addEventListener("click", () => {
       this.sorted = { column: i, down: sorted && !this.sorted.down };
       this.draw();

@@ -142,7 +142,7 @@ class Viewer {
     }
   }
 
-  /** A file may have been made for another place on the bed: it is shown where the other side is. */
+  /** A file made for another place on the bed is shown where the other side is. */
   alignFiles() {
     const [one, other] = this.sides;
     if (!one || !other || !one.route || !other.route) return;
@@ -326,11 +326,11 @@ class Viewer {
     const column = this.state.metric;
     const found = [];
     let near = 0;
+    const gap = (row, z) => Math.abs(theirs[row] - z);
     one.scores.indices.forEach((index, row) => {
       const z = one.scores.zMm[row];
-      while (near + 1 < theirs.length && Math.abs(theirs[near + 1] - z) <= Math.abs(theirs[near] - z))
-        near++;
-      if (theirs.length === 0 || Math.abs(theirs[near] - z) > 0.6 * this.heightMm()) return;
+      while (near + 1 < theirs.length && gap(near + 1, z) <= gap(near, z)) near++;
+      if (theirs.length === 0 || gap(near, z) > 0.6 * this.heightMm()) return;
       const left = one.scores.columns[column][row];
       const right = other.scores.columns[column][near];
       if (Number.isNaN(left) || Number.isNaN(right)) return;
@@ -342,7 +342,7 @@ class Viewer {
       `${this.amount(entry.right)} on the right`);
   }
 
-  /** Goes to the next of the listed layers whose route was kept, and says so if others come before. */
+  /** Goes to the next listed layer whose route was kept; says so if others come before it. */
   visit(key, entries, number, words) {
     const full = [
       key, this.state.metric, this.state.model, this.state.setting, this.state.seed,
