@@ -10,12 +10,12 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
-from .console import EXIT_DONE, Parser, guarded
+from .console import EXIT_DONE, Parser, guarded, write_out
 from .errors import PlotError
 from .figures import chosen_metrics, draw_all
 from .results import Results, find_database
 from .sheet import FORMATS
-from .terminal import print_paths, progress
+from .terminal import progress
 
 _DEFAULT_FORMATS = "png,svg"
 _INDEX = ".routebench-plots"
@@ -26,7 +26,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Plots, prints the files written, and returns the exit code."""
 
     def work() -> int:
-        print_paths(_run(arguments))
+        # One a line, byte for byte as the system has them.
+        write_out(b"".join(os.fsencode(path) + b"\n" for path in _run(arguments)))
         return EXIT_DONE
 
     return guarded(work, "interrupted, nothing written")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 import signal
 import sys
 from collections.abc import Callable
@@ -37,6 +38,16 @@ def guarded(work: Callable[[], int], interrupted: str) -> int:
         return _complain(interrupted, EXIT_INTERRUPTED)
     except Exception as error:  # the last resort: still one line
         return _complain(f"internal error: {error!r}", EXIT_INTERNAL)
+
+
+def write_out(data: bytes) -> None:
+    """Data for stdout; whoever reads it may stop before its end."""
+    try:
+        sys.stdout.buffer.write(data)
+        sys.stdout.flush()
+    except BrokenPipeError:
+        # Python would complain about it once more at its own end.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _complain(message: str, exit_code: int) -> int:

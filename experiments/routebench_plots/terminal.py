@@ -1,24 +1,11 @@
-"""What a command says while it works, and when it is done."""
+"""What a command says on a terminal while it works."""
 
 from __future__ import annotations
 
-import os
 import sys
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from pathlib import Path
-
-
-def print_paths(paths: Sequence[Path]) -> None:
-    """One a line, byte for byte as the system has them."""
-    try:
-        for path in paths:
-            sys.stdout.buffer.write(os.fsencode(path) + b"\n")
-        sys.stdout.flush()
-    except BrokenPipeError:
-        # Whoever asked has read enough; Python would complain at its end.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 @contextmanager

@@ -10,11 +10,11 @@ import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
-from routebench_plots.console import EXIT_DONE, Parser, guarded
+from routebench_plots.console import EXIT_DONE, Parser, guarded, write_out
 from routebench_plots.errors import PlotError
 from routebench_plots.naming import printable
 from routebench_plots.results import DATABASE_NAME, Results, find_database
-from routebench_plots.terminal import print_paths, progress
+from routebench_plots.terminal import progress
 
 from . import content, sections
 from .page import page, viewer_section
@@ -27,7 +27,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Makes a page, prints where it is, and returns the exit code."""
 
     def work() -> int:
-        print_paths([_run(arguments)])
+        write_out(os.fsencode(_run(arguments)) + b"\n")
         return EXIT_DONE
 
     return guarded(work, "interrupted, nothing written")
