@@ -85,10 +85,11 @@ def _cells(line: str) -> list[str]:
 
 
 def _inline(text: str) -> str:
-    """Bold, code and what a backslash escapes."""
+    """Bold, emphasis, code and what a backslash escapes."""
     made = html.escape(text)
     made = re.sub(r"(?<!\\)`([^`]+)`", r"<code>\1</code>", made)
     made = re.sub(r"(?<!\\)\*\*(.+?)(?<!\\)\*\*", r"<strong>\1</strong>", made)
+    made = re.sub(r"(?<!\\)\*(\S[^*]*?)(?<!\\)\*", r"<em>\1</em>", made)
     return re.sub(r"\\([!-/:-@\[-`{-~])", r"\1", made)
 
 

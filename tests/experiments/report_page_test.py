@@ -286,17 +286,19 @@ class MarkdownTest(unittest.TestCase):
 
     def test_blocks(self) -> None:
         made = markdown.to_html(
-            "# One\n\ntwo\nthree **four** `<five>`\n\n- six\n- seven\n\n"
+            "# One\n\ntwo\n*three* **four** `<five>`\n\n- six\n- seven\n\n"
             "| a | b |\n| :-- | --: |\n| x \\| y | 1 |\n"
         )
         self.assertIn("<h3>One</h3>", made)
-        self.assertIn("<p>two three <strong>four</strong> <code>&lt;five&gt;</code></p>", made)
+        self.assertIn(
+            "<p>two <em>three</em> <strong>four</strong> <code>&lt;five&gt;</code></p>", made
+        )
         self.assertIn("<ul><li>six</li><li>seven</li></ul>", made)
         self.assertIn('<td>x | y</td><td class="number">1</td>', made)
 
     def test_escaped_is_text(self) -> None:
-        made = markdown.to_html("\\<b\\> \\*\\*not bold\\*\\* \\`no code\\`")
-        self.assertEqual(made, "<p>&lt;b&gt; **not bold** `no code`</p>")
+        made = markdown.to_html("\\<b\\> \\*\\*not bold\\*\\* 2 * 3 * 4 \\`no code\\`")
+        self.assertEqual(made, "<p>&lt;b&gt; **not bold** 2 * 3 * 4 `no code`</p>")
 
 
 if __name__ == "__main__":
