@@ -14,10 +14,12 @@ packages=(
   libcli11-dev libsqlite3-dev libtomlplusplus-dev nlohmann-json3-dev
   # tests and benchmarks
   libbenchmark-dev libgtest-dev
-  # plots
-  python3 python3-matplotlib python3-numpy
+  # plots and reports
+  python3 python3-matplotlib python3-numpy libjs-three
   # the Python module
   pybind11-dev python3-dev python3-pandas
+  # tests of the report in a browser
+  chromium chromium-driver
   # the meshes behind cgal: models
   libcgal-demo
 )

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # From a bare Debian 12 machine to a scored comparison of planners with plots: installs packages,
-# builds, runs experiments/quickstart.toml, draws its plots. A second call takes up where the first
-# ended.
+# builds, runs experiments/quickstart.toml, draws its plots and writes its report. A second call takes
+# up where the first ended.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -19,5 +19,8 @@ fi
 
 echo "quickstart: drawing plots"
 "$program" plot results/quickstart
-echo "quickstart: done. Results in results/quickstart/results.sqlite, plots in results/quickstart/plots"
+echo "quickstart: writing the report"
+"$program" report results/quickstart
+echo "quickstart: done. Results in results/quickstart/results.sqlite, plots in results/quickstart/plots;"
+echo "quickstart: open results/quickstart/report.html in a browser to look at all of it"
 exit "$status"

@@ -5,10 +5,8 @@ from __future__ import annotations
 import argparse
 import os
 import shutil
-import sys
 import tempfile
-import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -17,6 +15,7 @@ from .errors import PlotError
 from .figures import chosen_metrics, draw_all
 from .results import Results, find_database
 from .sheet import FORMATS
+from .terminal import progress
 
 _DEFAULT_FORMATS = "png,svg"
 _INDEX = ".routebench-plots"
@@ -42,7 +41,7 @@ def _run(arguments: Sequence[str] | None) -> list[Path]:
     with Results(database) as results:
         names = options.metrics.split(",") if options.metrics else None
         metrics = chosen_metrics(results, names)
-        with _staging(out) as folder, _progress() as report:
+        with _staging(out) as folder, progress() as report:
             written = draw_all(
                 results, metrics, folder, formats, report, options.baseline
             )
@@ -68,27 +67,6 @@ def _formats(text: str) -> list[str]:
                 f"--formats {text}: '{name}' is none of {', '.join(FORMATS)}"
             )
     return formats
-
-
-@contextmanager
-def _progress() -> Iterator[Callable[[int, int], None]]:
-    """A line on stderr that comes and goes; nothing if no one looks on."""
-    start = time.monotonic()
-
-    def report(done: int, total: int) -> None:
-        left = (time.monotonic() - start) / done * (total - done)
-        _show(f"drew {done} of {total} figures, about {left:.0f} s left")
-
-    try:
-        yield report
-    finally:
-        _show("")
-
-
-def _show(text: str) -> None:
-    """Puts text in the place of the terminal's last line."""
-    if sys.stderr.isatty():
-        print(f"\r\033[K{text}", end="", file=sys.stderr, flush=True)
 
 
 @contextmanager

@@ -11,7 +11,7 @@ import math
 import sqlite3
 import statistics
 from collections import Counter, defaultdict
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -298,15 +298,34 @@ class Results:
         )
         return str(rows[0][0]) if rows else None
 
+    def model_row(self, setting: Item, model: Item) -> int | None:
+        """Which row of the table model a model is under a setting."""
+        return self._model_rows.get((setting.row_id, model.row_id))
+
+    def records(
+        self, sql: str, values: Sequence[object] = ()
+    ) -> Iterator[dict[str, Any]]:
+        """The rows of a query, their values by the names of its columns."""
+        try:
+            cursor = self._connection.execute(sql, values)
+            names = [column[0] for column in cursor.description]
+            for row in cursor:
+                yield dict(zip(names, row))
+        except sqlite3.Error as error:
+            raise self._broken(error) from error
+
     def _query(
         self, sql: str, values: Sequence[object] = ()
     ) -> list[tuple[Any, ...]]:
         try:
             return self._connection.execute(sql, values).fetchall()
         except sqlite3.Error as error:
-            raise PlotError(
-                f"{self.database}: not a whole results database: {error}"
-            ) from error
+            raise self._broken(error) from error
+
+    def _broken(self, error: sqlite3.Error) -> PlotError:
+        return PlotError(
+            f"{self.database}: not a whole results database: {error}"
+        )
 
     def _check_schema(self) -> None:
         rows = self._query(

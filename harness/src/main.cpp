@@ -89,6 +89,8 @@ int main(int argc, char** argv) {
   routebench::add_new_planner_command(app, exit_code);
   routebench::add_plot_command(app, exit_code);
   routebench::add_gate_command(app, exit_code);
+  routebench::add_report_command(app, exit_code);
+  routebench::add_view_command(app, exit_code);
   routebench::add_export_command(app, exit_code);
   routebench::add_merge_command(app, exit_code);
   routebench::add_reproduce_command(app, exit_code);

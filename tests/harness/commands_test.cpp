@@ -21,7 +21,8 @@ TEST_F(Program, HelpIsThereForEveryCommand) {
   const ProgramRun help = call({"--help"});
   EXPECT_EQ(help.exit_code, 0);
   for (const std::string command : {"run", "plan", "score", "slice", "planners", "check-planner",
-                                    "new-planner", "plot", "gate", "export", "doctor"}) {
+                                    "new-planner", "plot", "gate", "report", "view", "export",
+                                    "merge", "reproduce", "doctor"}) {
     EXPECT_NE(help.out.find("\n  " + command + " "), help.out.npos) << command;
     const ProgramRun own = call({command, "--help"});
     EXPECT_EQ(own.exit_code, 0) << command;
@@ -215,7 +216,7 @@ TEST_F(DoctorCommand, EveryLineSaysOkOrMissing) {
     seen.insert(name);
   }
   for (const char* name : {"routebench", "libraries", "machine", "timers", "planners", "write",
-                           "python", "cgal:", "prusa-slicer", "slic3r", "CuraEngine"})
+                           "python", "three.js", "cgal:", "prusa-slicer", "slic3r", "CuraEngine"})
     EXPECT_TRUE(seen.contains(name)) << name;
 }
 

@@ -19,7 +19,7 @@ if [[ $libraries == *"$build"* ]]; then
 fi
 # Where these are missing, the program takes those of the source tree, if that is still there.
 for file in planner_template/cpp/planner.cpp routebench_plots/__main__.py \
-    routebench_gate/__main__.py; do
+    routebench_gate/__main__.py routebench_report/__main__.py routebench_report/web/viewer.js; do
   if [ ! -f "$work/moved/share/routebench/$file" ]; then
     echo "plugin_project.sh: $file is not installed" >&2
     exit 1

@@ -130,6 +130,14 @@ Finding python() {
               "python3-numpy and python3-matplotlib"};
 }
 
+Finding three_js() {
+  // Where the package puts it, and where the report looks for it first.
+  const fs::path file = "/usr/share/javascript/three/three.min.js";
+  std::error_code error;
+  if (fs::is_regular_file(file, error)) return {"three.js", true, file.string()};
+  return {"three.js", false, "needed for reports and the route viewer; install libjs-three"};
+}
+
 Finding scans() {
   try {
     const Model model = load_model("cgal:meshes/elephant.off");
@@ -162,6 +170,7 @@ void examine(const std::vector<std::string>& plugin_files) {
                                          planners(plugin_files),
                                          write_access(),
                                          python(),
+                                         three_js(),
                                          scans(),
                                          slicer("prusa-slicer", "prusa-slicer"),
                                          slicer("slic3r", "slic3r"),

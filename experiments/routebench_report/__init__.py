@@ -1,0 +1,1 @@
+"""One page that shows an experiment, and the viewer of its routes."""

@@ -1,0 +1,64 @@
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "python_program.hpp"
+#include "routebench/harness/commands.hpp"
+
+namespace routebench {
+namespace {
+
+constexpr const char* kPackage = "routebench_report";
+
+struct PageOptions {
+  std::string input;
+  std::string out;
+  std::string baseline;
+  bool no_open = false;
+};
+
+std::vector<std::string> arguments_of(const char* command, const PageOptions& options) {
+  std::vector<std::string> arguments{command};
+  // One word each, so that a value may begin with a dash.
+  if (!options.out.empty()) arguments.push_back("--out=" + options.out);
+  if (!options.baseline.empty()) arguments.push_back("--baseline=" + options.baseline);
+  if (options.no_open) arguments.emplace_back("--no-open");
+  arguments.insert(arguments.end(), {"--", options.input});
+  return arguments;
+}
+
+}  // namespace
+
+void add_report_command(CLI::App& app, int& exit_code) {
+  CLI::App* const command = app.add_subcommand(
+      "report", "write one HTML file with all of an experiment, and a viewer of its routes");
+  const auto options = std::make_shared<PageOptions>();
+  command->add_option("results", options->input, "folder of a run, or the results.sqlite in it")
+      ->required();
+  command->add_option("--out", options->out, "file to write [RESULTS/report.html]");
+  command->add_option("--baseline", options->baseline,
+                      "contender that the summary compares the others with [the one valid on most "
+                      "models]");
+  command->callback([options, &exit_code] {
+    exit_code = run_python_package(kPackage, arguments_of("report", *options));
+  });
+}
+
+void add_view_command(CLI::App& app, int& exit_code) {
+  CLI::App* const command = app.add_subcommand(
+      "view", "look at the moves of a G-code file, or of an experiment's routes, in a browser");
+  const auto options = std::make_shared<PageOptions>();
+  command
+      ->add_option("input", options->input,
+                   "file of G-code, folder of a run, or the results.sqlite in it")
+      ->required();
+  command->add_option("--out", options->out,
+                      "file to write [FILE.view.html beside the G-code, or RESULTS/view.html]");
+  command->add_flag("--no-open", options->no_open, "only write the file and print its name");
+  command->callback([options, &exit_code] {
+    exit_code = run_python_package(kPackage, arguments_of("view", *options));
+  });
+}
+
+}  // namespace routebench
