@@ -10,6 +10,7 @@ from pathlib import Path
 
 from . import (
     bars,
+    claims,
     curves,
     outcomes,
     routes,
@@ -105,6 +106,23 @@ def figures(results: Results, metrics: Sequence[Metric]) -> Iterator[Figure]:
             )
 
 
+def claim_figures(
+    results: Results, judged: Sequence[claims.Judged]
+) -> Iterator[Figure]:
+    """Claimed and measured growth, a figure for each size."""
+    for size in claims.sizes_claimed(judged):
+        yield Figure(
+            f"claims-{size.name}",
+            partial(
+                claims.draw,
+                results,
+                judged,
+                size,
+                f"Claimed and measured growth with {in_sentence(size.label)}",
+            ),
+        )
+
+
 def draw_all(
     results: Results,
     metrics: Sequence[Metric],
@@ -119,16 +137,30 @@ def draw_all(
     many are done, and of how many.
     """
     compared = summary.summary(results, baseline)
+    judged = claims.judged_claims(results)
     written = []
     with applied():
-        planned = list(figures(results, metrics))
+        planned = [
+            *figures(results, metrics),
+            *claim_figures(results, judged),
+        ]
         for done, figure in enumerate(planned, start=1):
             figure.draw().save(folder, figure.stem, formats)
             written += [f"{figure.stem}.{ending}" for ending in formats]
             report(done, len(planned))
     made = tables.tables(results, metrics)
     for name, text in (
-        ("summary.md", summary.to_markdown(compared, results.experiment)),
+        (
+            "summary.md",
+            summary.to_markdown(compared, results.experiment)
+            + "".join(
+                line + "\n"
+                for line in (
+                    *claims.claims_markdown(judged),
+                    *claims.published_markdown(results),
+                )
+            ),
+        ),
         (
             "table.md",
             tables.to_markdown(made, f"Totals of {results.experiment}"),
