@@ -103,6 +103,7 @@ _OUTCOMES = {
     "crashed": OutcomeLook("crashed", "#B5450C", "#FFFFFF"),
     "timed_out": OutcomeLook("timed out", "#BFB3DC", "#000000"),
     "out_of_memory": OutcomeLook("out of memory", "#5E4B9A", "#FFFFFF"),
+    "not_installed": OutcomeLook("not installed", "#E8E8E8", "#000000"),
     "not_run": OutcomeLook("not run", "#FFFFFF", MUTED),
 }
 OUTCOME_ORDER = tuple(_OUTCOMES)

@@ -261,11 +261,42 @@ LayerOrder read_order(const ConfigEntry& point) {
   point.refuse_value("\"island\" or \"stage\"");
 }
 
+/// Names of slicers, or one table with a command.
+Axis slicer_axis(const ConfigEntry& entry) {
+  if (entry.node->is_table()) return {entry.key, {entry}, false};
+  return axis_of(entry, entry.key, ValueShape::kSingle);
+}
+
+/// Relative paths of programs begin at the config's folder.
+SlicerSpec read_slicer(const ConfigEntry& point, const std::string& file) {
+  SlicerSpec slicer;
+  slicer.folder = beside(file, "");
+  if (point.node->is_table()) {
+    const ConfigTable table(file, "`slicer`", point.table(""));
+    table.require_known({"command"});
+    slicer.command = table.at("command").text();
+    if (slicer.command.empty()) point.refuse("the command is empty");
+  } else {
+    slicer.name = point.text();
+  }
+  try {
+    check_slicer(slicer);
+  } catch (const Error& error) {
+    point.refuse(error.what());
+  }
+  return slicer;
+}
+
 /// Puts the value of one axis where it belongs.
-void apply(const Axis& axis, const ConfigEntry& point, ConfiguredContender& contender) {
+void apply(const Axis& axis, const ConfigEntry& point, const std::string& file,
+           ConfiguredContender& contender) {
   contender.key_places[axis.name] = point.place;
   if (axis.name == "order") {
     contender.spec.order = read_order(point);
+    return;
+  }
+  if (axis.name == "slicer") {
+    contender.spec.slicer = read_slicer(point, file);
     return;
   }
   const std::size_t dot = axis.name.find('.');
@@ -286,12 +317,15 @@ void add_contenders(const ConfigTable& table, const std::string& file,
   table.require_known(kContenderKeys);
   const ConfigEntry name = table.at("name");
   if (name.text().empty()) name.refuse("must not be empty");
-  if (const auto slicer = table.find("slicer"))
-    slicer->refuse("this version does not run foreign slicers; give `shell` or `fill`");
-  if (!table.find("shell") && !table.find("fill"))
-    name.refuse("the contender has neither `shell` nor `fill`; give at least one");
+  if (table.find("slicer"))
+    for (const char* slot : {"shell", "fill", "order"})
+      if (const auto found = table.find(slot))
+        found->refuse("a contender with a `slicer` has no planners; give either");
+  if (!table.find("slicer") && !table.find("shell") && !table.find("fill"))
+    name.refuse("the contender has neither `shell` nor `fill` nor `slicer`; give at least one");
 
   std::vector<Axis> axes;
+  if (const auto slicer = table.find("slicer")) axes.push_back(slicer_axis(*slicer));
   add_slot_axes(table, "shell", file, axes);
   add_slot_axes(table, "fill", file, axes);
   if (const auto order = table.find("order"))
@@ -306,7 +340,7 @@ void add_contenders(const ConfigTable& table, const std::string& file,
     contender.base_name = name.text();
     contender.place = name.place;
     for (std::size_t i = 0; i < axes.size(); ++i)
-      apply(axes[i], axes[i].points[combination[i]], contender);
+      apply(axes[i], axes[i].points[combination[i]], file, contender);
     const std::string label = sweep_label(axes, combination);
     contender.spec.name = contender.base_name + (label.empty() ? "" : " [" + label + "]");
     const auto [taken, is_new] = places.emplace(contender.spec.name, name.place);

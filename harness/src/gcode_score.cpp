@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "routebench/geometry/edge_grid.hpp"
 #include "routebench/geometry/grid.hpp"
 #include "routebench/geometry/region.hpp"
 #include "routebench/geometry/vec.hpp"
@@ -56,6 +57,46 @@ Route shifted(const Route& route, Point2 by) {
   for (Stroke& stroke : result.strokes)
     for (Point2& p : stroke.points) p = snap(p + by);
   return result;
+}
+
+/// What each stroke is for: by the file, else by where most of it lies.
+std::vector<StrokeKind> kinds_of(const Route& route,
+                                 const std::vector<std::optional<StrokeKind>>& told,
+                                 const Demand& demand) {
+  std::optional<EdgeGrid> dense, sparse;
+  std::vector<StrokeKind> kinds;
+  kinds.reserve(route.strokes.size());
+  for (std::size_t i = 0; i < route.strokes.size(); ++i) {
+    if (told[i]) {
+      kinds.push_back(*told[i]);
+      continue;
+    }
+    if (!dense) {
+      dense.emplace(demand.dense);
+      sparse.emplace(demand.sparse);
+    }
+    double length_mm = 0, dense_mm = 0, sparse_mm = 0;
+    const std::vector<Point2>& points = route.strokes[i].points;
+    for (std::size_t k = 1; k < points.size(); ++k) {
+      const double piece_mm = distance(points[k - 1], points[k]);
+      length_mm += piece_mm;
+      dense_mm += piece_mm - dense->outside_length_mm(points[k - 1], points[k]);
+      sparse_mm += piece_mm - sparse->outside_length_mm(points[k - 1], points[k]);
+    }
+    const double wall_mm = length_mm - dense_mm - sparse_mm;
+    kinds.push_back(wall_mm >= std::max(dense_mm, sparse_mm) ? StrokeKind::kWall
+                    : dense_mm >= sparse_mm                  ? StrokeKind::kDense
+                                                             : StrokeKind::kSparse);
+  }
+  return kinds;
+}
+
+/// Which layers of a file have no place on the model, in one line.
+std::string unpaired_text(const GcodePrint& print, const LayerPairs& pairs) {
+  if (pairs.unpaired.empty()) return {};
+  return std::to_string(pairs.unpaired.size()) + " of " + std::to_string(print.layers.size()) +
+         " layers of the G-code are none of the model's, the first at z = " +
+         to_string(ParamValue(print.layers[pairs.unpaired.front()].z_mm)) + " mm";
 }
 
 /// Takes metrics out of a cell's scores.
@@ -117,21 +158,51 @@ Point2 offset_to_model(std::span<const Layer> model, std::span<const GcodeLayer>
   return snap(shift);
 }
 
+PlacedPrint place_print(const GcodePrint& print, const PreparedModel& model,
+                        std::span<const std::size_t> chosen, std::optional<Point2> offset_mm,
+                        double line_width_mm, const ParallelFor& parallel_for) {
+  const std::vector<Layer>& layers = model.sliced.layers;
+  PlacedPrint placed;
+  placed.pairs = pair_layers(layers, print.layers);
+  placed.offset_mm =
+      offset_mm ? *offset_mm : offset_to_model(layers, print.layers, placed.pairs, line_width_mm);
+  placed.unpaired = unpaired_text(print, placed.pairs);
+  placed.stated_time_s = print.stated_time_s;
+  placed.layers.resize(chosen.size());
+  parallel_for(chosen.size(), [&](std::size_t i) {
+    const std::optional<std::size_t> pair = placed.pairs.file_layers[chosen[i]];
+    if (!pair) return;
+    const GcodeLayer& layer = print.layers[*pair];
+    placed.layers[i].route = shifted(layer.route, placed.offset_mm);
+    placed.layers[i].kinds =
+        kinds_of(placed.layers[i].route, layer.kinds, model.demands[chosen[i]]);
+  });
+  return placed;
+}
+
+JudgedCell judge_print(const Judge& judge, const PreparedModel& model,
+                       std::span<const std::size_t> chosen, const PlacedPrint& placed,
+                       const ParallelFor& parallel_for) {
+  JudgedCell cell = judge_layers(judge, model, chosen, placed.layers, parallel_for);
+  forget(cell, kPlanMetrics);
+  cell.totals.at(metric_index("stated_time_s")) = placed.stated_time_s;
+  if (!placed.pairs.unpaired.empty()) {
+    cell.verdict.outcome = Outcome::kOffTask;
+    std::string& reason = cell.verdict.reason;
+    reason += (reason.empty() ? "" : "; ") + placed.unpaired;
+  }
+  return cell;
+}
+
 GcodeScore score_gcode(const Judge& judge, const PreparedModel& model,
                        std::span<const std::size_t> chosen, const GcodePrint& print,
                        std::optional<Point2> offset_mm, const ParallelFor& parallel_for) {
-  const std::vector<Layer>& layers = model.sliced.layers;
+  PlacedPrint placed =
+      place_print(print, model, chosen, offset_mm, judge.task().line_width_mm, parallel_for);
   GcodeScore score;
-  score.pairs = pair_layers(layers, print.layers);
-  score.offset_mm =
-      offset_mm ? *offset_mm
-                : offset_to_model(layers, print.layers, score.pairs, judge.task().line_width_mm);
-  std::vector<PlannedLayer> printed(chosen.size());
-  for (std::size_t i = 0; i < chosen.size(); ++i)
-    if (const std::optional<std::size_t> pair = score.pairs.file_layers[chosen[i]])
-      printed[i].route = shifted(print.layers[*pair].route, score.offset_mm);
-  score.cell = judge_layers(judge, model, chosen, printed, parallel_for);
-  forget(score.cell, kPlanMetrics);
+  score.cell = judge_print(judge, model, chosen, placed, parallel_for);
+  score.pairs = std::move(placed.pairs);
+  score.offset_mm = placed.offset_mm;
   return score;
 }
 
@@ -150,6 +221,7 @@ GcodeScore score_gcode(const Judge& judge, const GcodePrint& print,
   bare.demands.resize(printed.size());
   GcodeScore score;
   score.cell = judge_layers(judge, bare, all_layers(bare.sliced), printed, parallel_for);
+  score.cell.totals.at(metric_index("stated_time_s")) = print.stated_time_s;
   forget(score.cell, kPlanMetrics);
   forget(score.cell, kOutlineMetrics);
   if (judge.printer().retract_policy == RetractPolicy::kLengthAndCrossing)

@@ -82,6 +82,16 @@ Json json_of(const Contender& contender) {
           {"order", to_string(spec.order)}};
 }
 
+Json json_of(const SlicerSpec& slicer) {
+  return slicer.command.empty() ? Json{{"name", slicer.name}} : Json{{"command", slicer.command}};
+}
+
+Json json_of(const Slicer& slicer) {
+  Json json = json_of(slicer.spec());
+  json["version"] = slicer.version().empty() ? Json(nullptr) : Json(slicer.version());
+  return json;
+}
+
 Json json_of(const MeshReport& report) {
   Json simplification;
   if (report.simplification)

@@ -8,6 +8,7 @@
 #include "routebench/geometry/slice.hpp"
 #include "routebench/harness/contender.hpp"
 #include "routebench/harness/metrics.hpp"
+#include "routebench/harness/slicer.hpp"
 #include "routebench/harness/task.hpp"
 #include "routebench/planning/params.hpp"
 #include "routebench/planning/plugin.hpp"
@@ -27,6 +28,10 @@ using Json = nlohmann::ordered_json;
 
 /// name, shell, fill (each with planner and every parameter, null if absent), order.
 [[nodiscard]] Json json_of(const Contender& contender);
+
+/// What was asked for, and that with what was found.
+[[nodiscard]] Json json_of(const SlicerSpec& slicer);
+[[nodiscard]] Json json_of(const Slicer& slicer);
 
 [[nodiscard]] Json json_of(const MeshReport& report);
 [[nodiscard]] Json json_of(const SliceReport& report);

@@ -62,12 +62,20 @@ constexpr std::array kMetrics{
     MetricInfo{"print_retract_s", "Retracting time", "s", kLower, kSum,
                "of the print time, while the filament is pulled back, the nozzle lifted, and both "
                "undone"},
+    MetricInfo{"stated_time_s", "Print time by the slicer", "s", kNeither, kCell,
+               "what a foreign slicer itself says of the print time, by its own model of the "
+               "printer"},
     MetricInfo{"plan_wall_ns", "Planning time", "ns", kLower, kSum,
                "time inside the planners' plan(), by the clock on the wall"},
     MetricInfo{"plan_cpu_ns", "Planning CPU time", "ns", kLower, kSum,
                "time inside the planners' plan(), of the processor"},
     MetricInfo{"peak_rss_bytes", "Peak memory", "bytes", kLower, kCell,
-               "largest resident memory of the process that planned"},
+               "largest resident memory of the process that planned, or of the foreign slicer"},
+    MetricInfo{"job_wall_s", "Whole job", "s", kLower, kCell,
+               "time of a foreign slicer from its start to its end, by the clock on the wall: "
+               "model read, sliced, planned, G-code written"},
+    MetricInfo{"job_cpu_s", "Whole job, CPU time", "s", kLower, kCell,
+               "time of a foreign slicer from its start to its end, of the processors"},
 };
 
 }  // namespace

@@ -10,8 +10,7 @@ namespace routebench {
 namespace fs = std::filesystem;
 
 Outcome outcome_named(const std::string& name) {
-  for (const Outcome outcome : {Outcome::kValid, Outcome::kOffTask, Outcome::kFailed,
-                                Outcome::kCrashed, Outcome::kTimedOut, Outcome::kOutOfMemory})
+  for (const Outcome outcome : outcomes())
     if (to_string(outcome) == name) return outcome;
   throw Error(ErrorKind::kBadInput, "a results database has the unknown outcome '" + name + "'");
 }

@@ -7,7 +7,9 @@
 #include "byte_stream.hpp"
 #include "json_parts.hpp"
 #include "routebench/geometry/error.hpp"
+#include "routebench/geometry/model.hpp"
 #include "routebench/geometry/parallel.hpp"
+#include "routebench/harness/gcode_score.hpp"
 #include "routebench/harness/metrics.hpp"
 #include "routebench/planning/sha256.hpp"
 
@@ -80,7 +82,7 @@ CellResult decode(const std::string& bytes) {
   ByteReader in(bytes);
   CellResult result;
   const std::uint64_t outcome = in.whole();
-  if (outcome > static_cast<std::uint64_t>(Outcome::kOutOfMemory))
+  if (outcome > static_cast<std::uint64_t>(outcomes().back()))
     throw Error(ErrorKind::kInternal, "a record has no outcome");
   result.outcome = static_cast<Outcome>(outcome);
   result.reason = in.text();
@@ -122,8 +124,8 @@ ParallelFor told_loop(const std::vector<Layer>& layers, ChildProgress& progress)
 std::vector<PlannedLayer> plan(const CellWork& work, ChildProgress& progress) {
   const SlicedModel& sliced = work.model->sliced;
   progress.phase = ChildProgress::kPlanning;
-  return plan_layers(*work.contender, *work.model, all_layers(sliced), work.judge->task(),
-                     work.seed, {}, told_loop(sliced.layers, progress));
+  return plan_layers(std::get<Contender>(*work.worker), *work.model, all_layers(sliced),
+                     work.judge->task(), work.seed, {}, told_loop(sliced.layers, progress));
 }
 
 TimingSample timing_of(const std::vector<PlannedLayer>& planned) {
@@ -141,6 +143,7 @@ double peak_rss_bytes() {
 }
 
 std::string place_of(const ChildEnd& end) {
+  if (end.phase == ChildProgress::kSlicing) return " while the slicer ran";
   if (end.layer < 0) return " before the first layer";
   return std::string(end.phase == ChildProgress::kJudging ? " while judging" : " while planning") +
          " layer " + std::to_string(end.layer);
@@ -173,9 +176,48 @@ CellResult without_result(Outcome outcome, const std::string& reason) {
   return result;
 }
 
+/// Puts verdict, scores and the routes of the layers that are kept into a result.
+void add_judged(CellResult& result, JudgedCell judged, const std::vector<PlannedLayer>& planned,
+                const CellWork& work) {
+  result.outcome = judged.verdict.outcome;
+  result.reason = std::move(judged.verdict.reason);
+  result.route_hash = hash_of_route(planned);
+  result.totals = std::move(judged.totals);
+  result.layers = std::move(judged.layers);
+  for (const std::size_t i : work.kept_layers)
+    result.routes.push_back({static_cast<std::size_t>(work.model->sliced.layers[i].index),
+                             text_of(json_of(planned[i]), true)});
+}
+
+std::string execute_slicer(const Slicer& slicer, const CellWork& work, ChildProgress& progress) {
+  if (!slicer.missing().empty())
+    return encode(without_result(Outcome::kNotInstalled, slicer.missing()));
+  const SlicedModel& sliced = work.model->sliced;
+  if (!sliced.mesh)
+    throw Error(ErrorKind::kBadInput, "a slicer needs a mesh, but the model is a file of layers");
+  progress.phase = ChildProgress::kSlicing;
+  const SlicerRun run =
+      slicer.run(load_model(sliced.spec, {.repair = work.repair}).mesh, work.judge->task(),
+                 work.judge->printer(), work.scratch, work.memory_mb);
+  progress.phase = ChildProgress::kJudging;
+  const std::vector<std::size_t> chosen = all_layers(sliced);
+  const ParallelFor loop = told_loop(sliced.layers, progress);
+  const PlacedPrint placed = place_print(run.print, *work.model, chosen, run.offset_mm,
+                                         work.judge->task().line_width_mm, loop);
+  CellResult result;
+  add_judged(result, judge_print(*work.judge, *work.model, chosen, placed, loop), placed.layers,
+             work);
+  result.totals.at(metric_index("peak_rss_bytes")) = run.peak_rss_bytes;
+  result.totals.at(metric_index("job_wall_s")) = run.wall_s;
+  result.totals.at(metric_index("job_cpu_s")) = run.cpu_s;
+  return encode(result);
+}
+
 }  // namespace
 
 std::string execute_cell(const CellWork& work, ChildProgress& progress) {
+  if (const Slicer* slicer = std::get_if<Slicer>(work.worker))
+    return execute_slicer(*slicer, work, progress);
   const std::vector<PlannedLayer> planned = plan(work, progress);
   CellResult result;
   result.timing = timing_of(planned);
@@ -185,15 +227,8 @@ std::string execute_cell(const CellWork& work, ChildProgress& progress) {
   const SlicedModel& sliced = work.model->sliced;
   JudgedCell judged = judge_layers(*work.judge, *work.model, all_layers(sliced), planned,
                                    told_loop(sliced.layers, progress));
-  result.outcome = judged.verdict.outcome;
-  result.reason = std::move(judged.verdict.reason);
-  result.route_hash = hash_of_route(planned);
-  result.totals = std::move(judged.totals);
+  add_judged(result, std::move(judged), planned, work);
   result.totals.at(metric_index("peak_rss_bytes")) = peak_bytes;
-  result.layers = std::move(judged.layers);
-  for (const std::size_t i : work.kept_layers)
-    result.routes.push_back(
-        {static_cast<std::size_t>(sliced.layers[i].index), text_of(json_of(planned[i]), true)});
   return encode(result);
 }
 
@@ -215,7 +250,10 @@ CellResult cell_result_of(const ChildEnd& end, const ChildLimits& limits) {
         return without_result(Outcome::kCrashed, "what its process told cannot be read");
       }
     case ChildEnd::How::kException:
-      return without_result(Outcome::kFailed, one_line(end.text) + place_of(end));
+      // A slicer's failure says itself what failed.
+      return without_result(
+          Outcome::kFailed,
+          one_line(end.text) + (end.phase == ChildProgress::kSlicing ? "" : place_of(end)));
     case ChildEnd::How::kExited:
       return without_result(Outcome::kCrashed, "ended its process with exit code " +
                                                    std::to_string(end.code) + place_of(end) +

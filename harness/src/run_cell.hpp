@@ -2,25 +2,32 @@
 /// What happens in a cell's own process, and how its parent learns of it.
 
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "routebench/harness/contender.hpp"
 #include "routebench/harness/judge.hpp"
 #include "routebench/harness/pipeline.hpp"
 #include "routebench/harness/results.hpp"
+#include "routebench/harness/slicer.hpp"
 #include "run_child.hpp"
 
 namespace routebench {
 
 /// One cell, ready to be executed. Refers to what its parent holds.
 struct CellWork {
-  const Contender* contender = nullptr;
+  const std::variant<Contender, Slicer>* worker = nullptr;
   const PreparedModel* model = nullptr;
   const Judge* judge = nullptr;
   std::uint64_t seed = 1;
   std::vector<std::size_t> kept_layers;  ///< places whose routes are sent along
+  // For slicers alone:
+  bool repair = false;            ///< whether the model was mended; see ModelOptions
+  std::filesystem::path scratch;  ///< a folder that may be written
+  int memory_mb = 0;              ///< that the slicer may take
 };
 
 /// What a cell that was planned and judged tells.
@@ -34,10 +41,12 @@ struct CellResult {
   TimingSample timing;  ///< repetition is left at 0
 };
 
-/// Plans and judges; to be called in a child. Returns bytes for cell_result_of.
+/// Plans, or has a foreign slicer do so, and judges; to be called in a child. Returns bytes for
+/// cell_result_of.
 [[nodiscard]] std::string execute_cell(const CellWork& work, ChildProgress& progress);
 
-/// Plans only, for the time it takes; to be called in a child. Returns bytes for cell_result_of.
+/// Plans only, for the time it takes, which foreign slicers do not tell; to be called in a child.
+/// Returns bytes for cell_result_of.
 [[nodiscard]] std::string time_cell(const CellWork& work, ChildProgress& progress);
 
 /// What became of a cell's child. What did not end by telling a result has an outcome and a reason

@@ -81,9 +81,7 @@ PreparedModel prepared_model(const ConfiguredModel& model, const Task& task,
   return prepare_model(model.source, task, options, parallel_for);
 }
 
-ContenderRecord record_of(const ConfiguredContender& configured, const Contender& contender) {
-  Json variant = json_of(contender);
-  variant.erase("name");
+ContenderRecord record_of(const ConfiguredContender& configured, Json variant) {
   ContenderRecord record{configured.spec.name, configured.base_name, text_of(variant, true), ""};
   record.variant_hash = sha256(record.variant_json);
   return record;
@@ -99,6 +97,20 @@ std::string plugin_hashes(const ContenderSpec& spec, const PlannerSet& planners)
       if (plugin.file == origin) hashes.add(std::string_view(plugin.sha256));
   }
   return hashes.bytes();
+}
+
+ReadyContender ready_contender(const ConfiguredContender& configured, const PlannerSet& planners) {
+  if (configured.spec.slicer) {
+    Slicer slicer(*configured.spec.slicer);
+    // The version is part of what it is, so that another one is another variant.
+    ContenderRecord record = record_of(configured, {{"slicer", json_of(slicer)}});
+    return {std::move(record), std::move(slicer), ""};
+  }
+  Contender contender(configured.spec, planners.registry);
+  Json variant = json_of(contender);
+  variant.erase("name");
+  return {record_of(configured, std::move(variant)), std::move(contender),
+          plugin_hashes(configured.spec, planners)};
 }
 
 SettingRecord record_of(const Setting& setting) {
@@ -240,10 +252,11 @@ RunPlan make_plan(const ExperimentConfig& config, const PlannerSet& planners,
   require_known_choice(config, options);
   RunPlan plan;
   for (const ConfiguredContender& configured : config.contenders) {
-    Contender contender(configured.spec, planners.registry);
-    ContenderRecord record = record_of(configured, contender);
-    plan.contenders.push_back(
-        {std::move(record), std::move(contender), plugin_hashes(configured.spec, planners)});
+    plan.contenders.push_back(ready_contender(configured, planners));
+    const Slicer* slicer = std::get_if<Slicer>(&plan.contenders.back().worker);
+    if (slicer != nullptr)
+      plan.notes.push_back(configured.spec.name + ": " +
+                           (slicer->missing().empty() ? slicer->version() : slicer->missing()));
   }
   for (const Setting& setting : config.settings)
     plan.settings.push_back({record_of(setting), Judge(setting.task, setting.printer)});

@@ -4,6 +4,7 @@
 #include <deque>
 #include <memory>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "routebench/harness/config.hpp"
@@ -20,9 +21,10 @@ struct ReadyModel {
   PreparedModel prepared;
 };
 
+/// Planners or a foreign slicer.
 struct ReadyContender {
   ContenderRecord record;
-  Contender contender;
+  std::variant<Contender, Slicer> worker;
   std::string plugin_hashes;  ///< of the plugins that its planners come from
 };
 

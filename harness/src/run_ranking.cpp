@@ -198,15 +198,15 @@ void write_left_out(std::ostream& out, const std::vector<StoredCell>& cells) {
 }  // namespace
 
 bool all_valid(const std::vector<StoredCell>& cells) {
-  return std::all_of(cells.begin(), cells.end(),
-                     [](const StoredCell& cell) { return cell.outcome == Outcome::kValid; });
+  return std::all_of(cells.begin(), cells.end(), [](const StoredCell& cell) {
+    return cell.outcome == Outcome::kValid || cell.outcome == Outcome::kNotInstalled;
+  });
 }
 
 void write_ranking(std::ostream& out, const std::vector<StoredCell>& cells) {
   out << cells.size() << (cells.size() == 1 ? " cell:" : " cells:");
   const char* separator = " ";
-  for (const Outcome outcome : {Outcome::kValid, Outcome::kOffTask, Outcome::kFailed,
-                                Outcome::kCrashed, Outcome::kTimedOut, Outcome::kOutOfMemory}) {
+  for (const Outcome outcome : outcomes()) {
     const auto count = std::count_if(cells.begin(), cells.end(), [&](const StoredCell& cell) {
       return cell.outcome == outcome;
     });

@@ -12,6 +12,7 @@
 #include "run_interrupt.hpp"
 #include "run_plan.hpp"
 #include "run_progress.hpp"
+#include "scratch_folder.hpp"
 
 namespace routebench {
 namespace {
@@ -19,6 +20,11 @@ namespace {
 int jobs_of(const ExperimentConfig& config, const RunnerOptions& options) {
   const int jobs = options.jobs.value_or(config.run.jobs);
   return jobs > 0 ? jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+}
+
+/// Foreign slicers do not tell the time that planning takes, so there are no samples of it.
+bool is_foreign(const PlannedCell& cell) {
+  return std::holds_alternative<Slicer>(cell.contender->worker);
 }
 
 /// A cell on its way.
@@ -59,7 +65,7 @@ bool is_to_execute(const CellState& state) { return state.cell->chosen && state.
 
 std::vector<int> missing_repetitions(const CellState& state, int wanted) {
   std::vector<int> missing;
-  if (!state.cell->chosen || !state.has_route()) return missing;
+  if (!state.cell->chosen || !state.has_route() || is_foreign(*state.cell)) return missing;
   for (int i = 0; i < wanted; ++i)
     if (!std::binary_search(state.repetitions.begin(), state.repetitions.end(), i))
       missing.push_back(i);
@@ -140,6 +146,7 @@ class Execution {
   const RunLog& log_;
   ChildLimits limits_;
   int jobs_;
+  ScratchFolder scratch_{std::filesystem::temp_directory_path()};  ///< of slicers that are killed
   InterruptWatch interrupt_;
   ResultsWriter results_;
   std::vector<CellState> states_;
@@ -206,8 +213,14 @@ void Execution::begin() {
 }
 
 CellWork Execution::work_of(const PlannedCell& cell) const {
-  return {&cell.contender->contender, &cell.model->prepared, &cell.setting->judge, cell.seed,
-          config_.run.keep_layers.of(cell.model->record.layers)};
+  return {&cell.contender->worker,
+          &cell.model->prepared,
+          &cell.setting->judge,
+          cell.seed,
+          config_.run.keep_layers.of(cell.model->record.layers),
+          options_.repair,
+          scratch_.path(),
+          config_.run.memory_mb};
 }
 
 void Execution::store(CellState& state, const ChildEnd& end, const std::string& started_utc,
@@ -232,7 +245,7 @@ void Execution::store(CellState& state, const ChildEnd& end, const std::string& 
   state.outcome = result.outcome;
   state.route_hash = std::move(result.route_hash);
   // With several cells at a time they disturb each other: such times are no samples.
-  if (jobs_ == 1 && state.has_route()) {
+  if (jobs_ == 1 && state.has_route() && !is_foreign(cell)) {
     record.timing = std::move(result.timing);
     state.repetitions.push_back(0);
   }

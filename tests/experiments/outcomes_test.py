@@ -19,6 +19,7 @@ ALL = (
     "crashed",
     "timed_out",
     "out_of_memory",
+    "not_installed",
 )
 
 

@@ -5,18 +5,17 @@
 #include <array>
 #include <chrono>
 #include <cstdio>
-#include <cstdlib>
 #include <ctime>
 #include <filesystem>
 #include <iostream>
 #include <memory>
 #include <optional>
-#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "arguments.hpp"
+#include "program_path.hpp"
 #include "routebench/geometry/error.hpp"
 #include "routebench/geometry/model.hpp"
 #include "routebench/harness/commands.hpp"
@@ -142,19 +141,8 @@ Finding scans() {
   }
 }
 
-std::optional<fs::path> found_in_path(const std::string& name) {
-  const char* path = std::getenv("PATH");
-  std::istringstream folders(path == nullptr ? "" : path);
-  for (std::string folder; std::getline(folders, folder, ':');) {
-    const fs::path file = fs::path(folder) / name;
-    std::error_code error;
-    if (fs::is_regular_file(file, error) && access(file.c_str(), X_OK) == 0) return file;
-  }
-  return std::nullopt;
-}
-
 Finding slicer(const std::string& name, const std::string& package) {
-  if (const auto file = found_in_path(name)) return {name, true, file->string()};
+  if (const auto file = program_path(name)) return {name, true, file->string()};
   return {name, false, "needed only to compare with this slicer; install " + package};
 }
 

@@ -116,12 +116,6 @@ class ScoreFile {
           std::to_string(others) + " of " + std::to_string(print_.layers.size()) +
           " layers are not as high as the task's layer_height_mm = " + readable(height_mm) +
           "; the first of them has " + readable(other_mm) + " mm");
-    if (!score_.pairs.unpaired.empty())
-      print_.warnings.push_back(
-          std::to_string(score_.pairs.unpaired.size()) + " of " +
-          std::to_string(print_.layers.size()) +
-          " layers belong to none of the model and are not judged; the first is at z = " +
-          readable(print_.layers[score_.pairs.unpaired.front()].z_mm) + " mm");
     // Widths by marks are believed; E may tell another story.
     constexpr double kApart = 0.02;
     const std::optional<double> laid = score_.cell.totals[metric_index("filament_mm3")];

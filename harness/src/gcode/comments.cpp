@@ -28,6 +28,34 @@ double measure(std::string_view text, std::string_view what, const Place& place)
   return *number;
 }
 
+/// "1d 2h 57m 48s" in seconds; nothing for what is written in another way.
+std::optional<double> duration_s(std::string_view text) {
+  double sum_s = 0;
+  for (std::string_view rest = trimmed(text); !rest.empty();) {
+    const std::string_view part = rest.substr(0, rest.find(' '));
+    rest = trimmed(rest.substr(part.size()));
+    const std::optional<double> number = decimal_in(part.substr(0, part.size() - 1));
+    if (!number) return std::nullopt;
+    switch (part.back()) {
+      case 'd':
+        sum_s += 24 * 3600 * *number;
+        break;
+      case 'h':
+        sum_s += 3600 * *number;
+        break;
+      case 'm':
+        sum_s += 60 * *number;
+        break;
+      case 's':
+        sum_s += *number;
+        break;
+      default:
+        return std::nullopt;
+    }
+  }
+  return sum_s > 0 ? std::optional(sum_s) : std::nullopt;
+}
+
 }  // namespace
 
 void read_comment(std::string_view text, const Place& place, PrintBuilder& print,
@@ -44,6 +72,8 @@ void read_comment(std::string_view text, const Place& place, PrintBuilder& print
     const double mm = measure(*height, "height", place);
     if (!(mm > 0)) place.refuse("the mark of a height is not positive");
     print.mark_height(mm);
+  } else if (const auto time = after("estimated printing time (normal mode) =", text)) {
+    if (const std::optional<double> time_s = duration_s(*time)) print.state_time(*time_s);
   } else if (const auto flavour = after("FLAVOR:", text)) {
     if (*flavour == "UltiGCode") machine.use_volumetric_e();
   } else if (const auto diameter =

@@ -46,6 +46,7 @@ class PrintBuilder {
   void mark_width(std::optional<double> width_mm);
   void mark_height(double height_mm);
   void state_filament(double diameter_mm) { filament_mm_ = diameter_mm; }
+  void state_time(double time_s) { print_.stated_time_s = time_s; }
   void ignore(std::string_view command);
 
   void bead(const Bead& bead, const Place& place);

@@ -58,6 +58,13 @@ class Misses {
 
 }  // namespace
 
+std::span<const Outcome> outcomes() {
+  using enum Outcome;
+  static constexpr std::array kAll{kValid,    kOffTask,     kFailed,      kCrashed,
+                                   kTimedOut, kOutOfMemory, kNotInstalled};
+  return kAll;
+}
+
 std::string_view to_string(Outcome outcome) {
   switch (outcome) {
     case Outcome::kValid:
@@ -72,6 +79,8 @@ std::string_view to_string(Outcome outcome) {
       return "timed_out";
     case Outcome::kOutOfMemory:
       return "out_of_memory";
+    case Outcome::kNotInstalled:
+      return "not_installed";
   }
   throw Error(ErrorKind::kInternal, "an outcome without a name");
 }

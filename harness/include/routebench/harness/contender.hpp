@@ -11,6 +11,7 @@
 
 #include "routebench/geometry/types.hpp"
 #include "routebench/harness/demand.hpp"
+#include "routebench/harness/slicer_spec.hpp"
 #include "routebench/harness/task.hpp"
 #include "routebench/planning/params.hpp"
 #include "routebench/planning/planner.hpp"
@@ -38,11 +39,13 @@ enum class LayerOrder {
 /// Throws Error{kBadInput} for an unknown name.
 [[nodiscard]] LayerOrder layer_order(std::string_view name);
 
+/// Planners in one or both slots, or a foreign slicer.
 struct ContenderSpec {
   std::string name;
   std::optional<SlotSpec> shell;
   std::optional<SlotSpec> fill;
   LayerOrder order = LayerOrder::kIsland;
+  std::optional<SlicerSpec> slicer = std::nullopt;  ///< then there is no slot
 };
 
 /// What a stroke is for.
@@ -56,7 +59,7 @@ struct PlannedLayer {
   std::int64_t plan_cpu_ns = 0;   ///< of this thread
 };
 
-/// A contender ready to plan. Immutable; plan() may be called from any thread.
+/// A contender of planners, ready to plan. Immutable; plan() may be called from any thread.
 class Contender {
  public:
   /// Throws Error{kBadInput} for unknown planners, a planner in the wrong slot, bad parameters, or

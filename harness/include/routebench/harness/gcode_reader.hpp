@@ -40,6 +40,9 @@ struct GcodePrint {
   double travel_mm = 0;         ///< XY length of the moves between strokes, detours included
   double filament_mm3 = 0;      ///< volume by E
 
+  /// How long the print takes by the estimate that PrusaSlicer and its kin write into their files.
+  std::optional<double> stated_time_s;
+
   std::size_t excluded_strokes = 0;  ///< that are no part of the model; see read_gcode
   double excluded_mm = 0;            ///< their length
   std::size_t lines = 0;

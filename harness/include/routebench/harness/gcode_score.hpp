@@ -39,6 +39,35 @@ struct LayerPairs {
 [[nodiscard]] Point2 offset_to_model(std::span<const Layer> model, std::span<const GcodeLayer> file,
                                      const LayerPairs& pairs, double line_width_mm);
 
+/// A file's strokes as the routes of a model's layers: what a contender's planners would have
+/// returned.
+struct PlacedPrint {
+  std::vector<PlannedLayer> layers;  ///< one for each chosen layer; without times
+  LayerPairs pairs;
+  Point2 offset_mm;                     ///< that was added
+  std::optional<double> stated_time_s;  ///< see GcodePrint
+  /// What could not be paired, in one line; empty if nothing.
+  std::string unpaired;
+};
+
+/// Puts a file's strokes where they belong on a model. A layer of the model that has no counterpart
+/// has no stroke; what the file lays on layers without counterpart is left out.
+///
+/// A stroke whose kind the file does not tell is for that region of the demand in which the longest
+/// part of it lies: dense or sparse inside, or the walls.
+///
+/// Takes  places of the model's layers, ascending, and the offset, if it is known.
+[[nodiscard]] PlacedPrint place_print(const GcodePrint& print, const PreparedModel& model,
+                                      std::span<const std::size_t> chosen,
+                                      std::optional<Point2> offset_mm, double line_width_mm,
+                                      const ParallelFor& parallel_for);
+
+/// Judges placed strokes as if a contender had planned them, but for plan times, of which there are
+/// none. A file that lays material on layers of its own is off task, and so says the reason.
+[[nodiscard]] JudgedCell judge_print(const Judge& judge, const PreparedModel& model,
+                                     std::span<const std::size_t> chosen, const PlacedPrint& placed,
+                                     const ParallelFor& parallel_for);
+
 /// A file's scores.
 struct GcodeScore {
   JudgedCell cell;  ///< without plan times; without a model the verdict means nothing
@@ -46,11 +75,7 @@ struct GcodeScore {
   Point2 offset_mm;
 };
 
-/// Judges a file against a model as if a contender had planned it. A layer of the model that has no
-/// counterpart is a layer without strokes; what the file lays on layers without counterpart is not
-/// judged.
-///
-/// Takes  places of the model's layers, ascending, and the offset, if it is known.
+/// Judges a file against a model: place_print, then judge_print.
 [[nodiscard]] GcodeScore score_gcode(const Judge& judge, const PreparedModel& model,
                                      std::span<const std::size_t> chosen, const GcodePrint& print,
                                      std::optional<Point2> offset_mm,

@@ -29,7 +29,17 @@ struct LayerScore {
 };
 
 /// How a cell ended.
-enum class Outcome { kValid, kOffTask, kFailed, kCrashed, kTimedOut, kOutOfMemory };
+enum class Outcome {
+  kValid,
+  kOffTask,
+  kFailed,
+  kCrashed,
+  kTimedOut,
+  kOutOfMemory,
+  kNotInstalled,  ///< the foreign slicer is not on this machine: no cell that went wrong
+};
+/// All of them, in this order.
+[[nodiscard]] std::span<const Outcome> outcomes();
 [[nodiscard]] std::string_view to_string(Outcome outcome);  ///< "valid", "off_task", ...
 
 struct Verdict {

@@ -66,7 +66,7 @@ RunSummary run_experiment(const ExperimentConfig& config, const PlannerSet& plan
 /// at all is no infinite advantage. A contender without a valid cell is not ranked.
 void write_ranking(std::ostream& out, const std::vector<StoredCell>& cells);
 
-/// True if all cells are valid.
+/// True if all cells are valid but those whose slicer is not installed.
 [[nodiscard]] bool all_valid(const std::vector<StoredCell>& cells);
 
 }  // namespace routebench
