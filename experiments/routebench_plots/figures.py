@@ -9,6 +9,7 @@ from pathlib import Path
 
 from . import (
     bars,
+    claims,
     curves,
     heat,
     outcomes,
@@ -107,6 +108,7 @@ def figures(
             suffix = suffixes[setting.row_id]
             yield from _outcome_figures(results, setting, suffix)
     yield from _sweep_figures(results)
+    yield from _claim_figures(results)
     swept = sweep.find(results) is not None
     drawn: set[object] = set()
     for setting in results.settings:
@@ -136,6 +138,22 @@ def figures(
                 yield from _route_figures(
                     results, setting, model, slug, suffix
                 )
+
+
+def _claim_figures(results: Results) -> Iterator[Figure]:
+    """Claimed and measured growth, a figure for each size."""
+    judged = claims.judged_claims(results)
+    for size in claims.sizes_claimed(judged):
+        yield Figure(
+            f"claims-{size.name}",
+            partial(
+                claims.draw,
+                results,
+                judged,
+                size,
+                f"Claimed and measured growth with {in_sentence(size.label)}",
+            ),
+        )
 
 
 def _plans_again(results: Results, setting: Item) -> bool:
@@ -204,7 +222,17 @@ def draw_all(
             report(done, len(planned))
     made = tables.tables(results, metrics)
     for name, text in (
-        ("summary.md", summary.to_markdown(compared, results.experiment)),
+        (
+            "summary.md",
+            summary.to_markdown(compared, results.experiment)
+            + "".join(
+                line + "\n"
+                for line in (
+                    *claims.claims_markdown(judged),
+                    *claims.published_markdown(results),
+                )
+            ),
+        ),
         (
             "table.md",
             tables.to_markdown(made, f"Totals of {results.experiment}"),

@@ -233,6 +233,56 @@ class Results:
         """The keys of the setting's [printer]."""
         return self._printers[setting.row_id]
 
+    def base_name(self, contender: Item) -> str:
+        """The contender's name without the point of its sweep."""
+        rows = self._query(
+            "SELECT base_name FROM contender WHERE contender_id = ?",
+            (contender.row_id,),
+        )
+        return str(rows[0][0])
+
+    def config_tables(self, key: str) -> list[dict[str, Any]]:
+        """A list of tables in the last run's config, with all defaults."""
+        rows = self._query(
+            "SELECT config_resolved_json FROM run ORDER BY run_id DESC LIMIT 1"
+        )
+        try:
+            tables = json.loads(rows[0][0]).get(key, []) if rows else []
+        except (TypeError, ValueError, AttributeError) as error:
+            raise PlotError(
+                f"{self.database}: the last run's config is not JSON: {error}"
+            ) from error
+        return [table for table in tables if isinstance(table, dict)]
+
+    def model_size(
+        self, setting: Item, model: Item, name: str
+    ) -> float | None:
+        """Triangles, layers, outline_vertices or side_mm of a model."""
+        rows = self._query(
+            "SELECT triangles, layers, report_json FROM model "
+            "WHERE model_id = ?",
+            (self._model_rows.get((setting.row_id, model.row_id)),),
+        )
+        if not rows:
+            return None
+        triangles, layers, report_json = rows[0]
+        report = json.loads(report_json)
+        mesh = report.get("mesh") or {}
+        sides = [
+            high - low
+            for low, high in zip(
+                mesh.get("lower_mm", []), mesh.get("upper_mm", [])
+            )
+        ]
+        return _number(
+            {
+                "triangles": triangles,
+                "layers": layers,
+                "outline_vertices": report.get("outline_vertices"),
+                "side_mm": max(sides, default=None),
+            }[name]
+        )
+
     def layer_rows(self, cell: Cell, metrics: Sequence[Metric]) -> LayerRows:
         """The scores of the cell's layers, upwards."""
         names = [m.name for m in metrics if m.name in self._layer_columns]

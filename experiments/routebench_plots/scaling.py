@@ -113,7 +113,7 @@ def draw(
         ],
         legend=[
             LegendEntry(
-                _handle(contender_looks[contender.row_id]),
+                marker_handle(contender_looks[contender.row_id]),
                 f"{contender.label}: {exponent_text(law)}",
             )
             for contender in results.contenders
@@ -126,7 +126,7 @@ def draw(
         if contender.row_id in found:
             points, law = found[contender.row_id]
             look = contender_looks[contender.row_id]
-            _draw_contender(axes, points, law, look, x_scale, y_scale)
+            draw_law(axes, points, law, look, x_scale, y_scale)
     axes.grid(True)
     for axis, set_scale in (
         (axes.xaxis, axes.set_xscale),
@@ -148,7 +148,8 @@ def exponent_text(law: Fit) -> str:
     return f"exponent {law.exponent:.2f} ± {law.half_width:.2f}"
 
 
-def _handle(look: Look) -> Line2D:
+def marker_handle(look: Look) -> Line2D:
+    """A contender's marker, for a legend."""
     return Line2D(
         [],
         [],
@@ -161,7 +162,7 @@ def _handle(look: Look) -> Line2D:
     )
 
 
-def _draw_contender(
+def draw_law(
     axes: Axes,
     points: Sequence[tuple[float, float]],
     law: Fit,
@@ -169,6 +170,7 @@ def _draw_contender(
     x_scale: Scale,
     y_scale: Scale,
 ) -> None:
+    """A contender's points, and its law between the outermost of them."""
     axes.plot(
         [x_scale(x) for x, _ in points],
         [y_scale(y) for _, y in points],

@@ -92,6 +92,8 @@ class Summary:
     """One a setting."""
     policy: list[str] = field(default_factory=list)
     """What a sweep of the retraction policy shows, as Markdown."""
+    claims: list[str] = field(default_factory=list)
+    """Claims and published figures beside what was measured, as Markdown."""
 
 
 def summary(results: Results, baseline: str | None = None) -> Summary:
@@ -109,6 +111,10 @@ def summary(results: Results, baseline: str | None = None) -> Summary:
     return Summary(
         [_part(results, setting, baseline) for setting in results.settings],
         _policy(results),
+        [
+            *claims.claims_markdown(claims.judged_claims(results)),
+            *claims.published_markdown(results),
+        ],
     )
 
 
@@ -132,6 +138,7 @@ def to_markdown(made: Summary, experiment: str) -> str:
         f"differ by more than {TIME_MARGIN:.0%}, too, for equal code measured "
         "twice differs by a few percent.".replace("%,", " %,"),
     ]
+    lines += made.claims
     if made.policy:
         lines += ["", "## Retraction policy", "", *made.policy]
     for part in made.parts:

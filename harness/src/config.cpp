@@ -10,6 +10,7 @@
 #include <system_error>
 #include <tuple>
 
+#include "config_claims.hpp"
 #include "config_sweep.hpp"
 #include "config_table.hpp"
 #include "routebench/geometry/error.hpp"
@@ -23,8 +24,9 @@ constexpr std::size_t kLongestName = 100;
 constexpr std::int64_t kHighestSeed = std::numeric_limits<std::int64_t>::max();
 constexpr const char* kSlotExample = "{ planner = \"rectilinear\", angle_deg = 45 }";
 
-const std::vector<std::string> kTopKeys{"name", "seed",    "models", "optional_models", "plugins",
-                                        "task", "printer", "run",    "contender"};
+const std::vector<std::string> kTopKeys{"name",      "seed",  "models",   "optional_models",
+                                        "plugins",   "task",  "printer",  "run",
+                                        "contender", "claim", "published"};
 const std::vector<std::string> kRunKeys{"repetitions", "timeout_s", "memory_mb", "jobs",
                                         "keep_layers"};
 const std::vector<std::string> kContenderKeys{"name", "shell", "fill", "order", "slicer"};
@@ -427,6 +429,7 @@ ExperimentConfig parse_config(const std::string& text, const std::filesystem::pa
   config.settings = read_settings(top, name);
   config.run = read_run(top, name);
   config.contenders = read_contenders(top, name);
+  read_claims(top, name, config);
   require_manageable(config);
   return config;
 }

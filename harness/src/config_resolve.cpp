@@ -75,6 +75,19 @@ std::string resolved_json(const ExperimentConfig& config, const Registry& regist
     entry["base_name"] = contender.base_name;
     contenders.push_back(std::move(entry));
   }
+  Json claims = Json::array(), published = Json::array();
+  for (const Claim& claim : config.claims)
+    claims.push_back({{"contender", claim.contender},
+                      {"size", claim.size},
+                      {"exponent", claim.exponent},
+                      {"source", claim.source}});
+  for (const PublishedFigure& figure : config.published)
+    published.push_back({{"model", figure.model},
+                         {"program", figure.program},
+                         {"metric", figure.metric},
+                         {"value", figure.value},
+                         {"note", figure.note},
+                         {"source", figure.source}});
   return text_of({{"name", config.name},
                   {"seeds", config.seeds},
                   {"models", std::move(models)},
@@ -87,7 +100,9 @@ std::string resolved_json(const ExperimentConfig& config, const Registry& regist
                     {"memory_mb", config.run.memory_mb},
                     {"jobs", config.run.jobs},
                     {"keep_layers", keep_json(config.run.keep_layers)}}},
-                  {"contenders", std::move(contenders)}});
+                  {"contenders", std::move(contenders)},
+                  {"claims", std::move(claims)},
+                  {"published", std::move(published)}});
 }
 
 }  // namespace routebench

@@ -93,6 +93,11 @@ Json json_of(const Slicer& slicer) {
 }
 
 Json json_of(const MeshReport& report) {
+  Json simplification;
+  if (report.simplification)
+    simplification = {{"triangles_before", report.simplification->triangles_before},
+                      {"triangles_after", report.simplification->triangles_after},
+                      {"deviation_mm", report.simplification->deviation_mm}};
   return {{"triangles", report.triangles},
           {"vertices", report.vertices},
           {"lower_mm", point_json(report.lower_mm)},
@@ -103,7 +108,8 @@ Json json_of(const MeshReport& report) {
           {"flipped_triangles", report.flipped_triangles},
           {"degenerate_triangles", report.degenerate_triangles},
           {"duplicate_triangles", report.duplicate_triangles},
-          {"volume_mm3", report.volume_mm3}};
+          {"volume_mm3", report.volume_mm3},
+          {"simplification", simplification}};
 }
 
 Json json_of(const SliceReport& report) {

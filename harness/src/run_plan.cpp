@@ -34,15 +34,33 @@ std::string hex(std::uint64_t value) {
   return text;
 }
 
+/// Triangles that were sliced; none if the model is a file of layers.
+std::size_t triangles_of(const SlicedModel& sliced) {
+  if (!sliced.mesh) return 0;
+  return sliced.mesh->simplification ? sliced.mesh->simplification->triangles_after
+                                     : sliced.mesh->triangles;
+}
+
+std::size_t outline_vertices(const std::vector<Layer>& layers) {
+  std::size_t vertices = 0;
+  for (const Layer& layer : layers)
+    for (const Polygon& polygon : layer.polygons) {
+      vertices += polygon.outer.size();
+      for (const Ring& hole : polygon.holes) vertices += hole.size();
+    }
+  return vertices;
+}
+
 ModelRecord record_of(const std::string& spec, const SlicedModel& sliced) {
   ModelRecord record;
   record.spec = spec;
   record.mesh_hash = sliced.mesh_hash ? hex(*sliced.mesh_hash) : "";
   record.layers_hash = hash_of_layers(sliced.layers);
-  record.triangles = sliced.mesh ? sliced.mesh->triangles : 0;
+  record.triangles = triangles_of(sliced);
   record.layers = sliced.layers.size();
   const Json report = {{"mesh", sliced.mesh ? json_of(*sliced.mesh) : Json(nullptr)},
-                       {"slicing", json_of(sliced.report)}};
+                       {"slicing", json_of(sliced.report)},
+                       {"outline_vertices", outline_vertices(sliced.layers)}};
   record.report_json = text_of(report, true);
   record.warnings_json = text_of(Json(sliced.warnings), true);
   return record;

@@ -13,6 +13,7 @@
 #include "model/model_spec.hpp"
 #include "model/placement.hpp"
 #include "model/raw_mesh.hpp"
+#include "model/simplify.hpp"
 #include "shapes/shapes.hpp"
 
 namespace routebench {
@@ -42,7 +43,7 @@ RawMesh read_model(const ModelSpec& parsed, const models::ReadContext& context) 
   if (!parsed.query.empty()) {
     models::refuse_model(context.name, "unknown parameter " +
                                            models::in_quotes(parsed.query.begin()->first) +
-                                           "; a file knows only ?size=");
+                                           "; a file knows only ?size= and ?simplify=");
   }
   if (parsed.scheme == ModelSpec::Scheme::kCgal) {
     return models::read_mesh(models::read_cgal_data(context.name, parsed.subject), context);
@@ -56,13 +57,17 @@ RawMesh read_model(const ModelSpec& parsed, const models::ReadContext& context) 
 Model load_model(const std::string& spec, const ModelOptions& options) {
   ModelSpec parsed = models::parse_model_spec(spec);
   const std::optional<double> size_mm = models::take_size_mm(spec, parsed);
+  const std::optional<double> simplify_share = models::take_simplify_share(spec, parsed);
   const std::string name = name_of(spec, parsed);
   RawMesh raw = read_model(parsed, {name, options.repair});
 
   Model model;
   model.spec = spec;
   models::mend(raw.mesh, name, model.report, raw.warnings);
+  if (simplify_share)
+    model.report.simplification = models::simplify(raw.mesh, *simplify_share, name);
   const double scale = models::place(raw, size_mm, name);
+  if (model.report.simplification) model.report.simplification->deviation_mm *= scale;
   const models::Bounds bounds = models::bounds_of(raw.mesh);
   model.report.volume_mm3 *= scale * scale * scale;
   model.report.lower_mm = bounds.lower;

@@ -32,6 +32,21 @@ bool is_existing_file(const std::string& path) {
   return std::filesystem::exists(path, unknown);
 }
 
+/// A number of the query, taken out of it.
+std::optional<double> take_number(const std::string& spec, ModelSpec& parsed,
+                                  const std::string& key, double least, double most,
+                                  const std::string& what) {
+  const auto item = parsed.query.extract(key);
+  if (!item) return std::nullopt;
+  const std::string& text = item.mapped();
+  double value = 0;
+  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool whole = error == std::errc() && stop == text.data() + text.size();
+  if (!whole || !(value >= least && value <= most))
+    refuse_model(spec, key + "=" + text + " must be " + what);
+  return value;
+}
+
 }  // namespace
 
 ModelSpec parse_model_spec(const std::string& spec) {
@@ -56,16 +71,12 @@ ModelSpec parse_model_spec(const std::string& spec) {
 }
 
 std::optional<double> take_size_mm(const std::string& spec, ModelSpec& parsed) {
-  const auto size = parsed.query.extract("size");
-  if (!size) return std::nullopt;
-  const std::string& text = size.mapped();
-  double value = 0;
-  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  const bool whole = error == std::errc() && stop == text.data() + text.size();
-  if (!whole || !(value >= 0.01 && value <= 10'000)) {
-    refuse_model(spec, "size=" + text + " must be a number of mm in 0.01..10000");
-  }
-  return value;
+  return take_number(spec, parsed, "size", 0.01, 10'000, "a number of mm in 0.01..10000");
+}
+
+std::optional<double> take_simplify_share(const std::string& spec, ModelSpec& parsed) {
+  return take_number(spec, parsed, "simplify", 0.001, 1,
+                     "the share of triangles to be left, in 0.001..1");
 }
 
 }  // namespace routebench::models

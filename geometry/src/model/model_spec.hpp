@@ -23,4 +23,8 @@ struct ModelSpec {
 /// Throws Error{kBadInput} for what is not a length between 0.01 mm and 10 m.
 [[nodiscard]] std::optional<double> take_size_mm(const std::string& spec, ModelSpec& parsed);
 
+/// The share of the triangles that a spec wants to be left, taken out of its query.
+/// Throws Error{kBadInput} for what is not in 0.001..1.
+[[nodiscard]] std::optional<double> take_simplify_share(const std::string& spec, ModelSpec& parsed);
+
 }  // namespace routebench::models

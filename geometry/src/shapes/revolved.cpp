@@ -85,8 +85,13 @@ std::size_t revolved_triangles(std::size_t spans, bool loop, std::size_t turn) {
 Mesh make_cylinder(ShapeQuery& query) {
   const double radius = query.mm("diameter", 20) / 2;
   const double height = query.mm("height", 20);
-  const std::size_t triangles = query.triangles(1024);
+  const auto segments = static_cast<std::size_t>(query.count("segments", 0, 3, 10'000'000));
+  const std::size_t triangles = query.triangles(segments > 0 ? 0 : 1024);
   query.finish();
+  if (segments > 0) {
+    if (triangles > 0) query.refuse("segments and triangles exclude each other");
+    return revolve({{0, 0}, {radius, 0}, {radius, height}, {0, height}}, false, segments, radius);
+  }
   const Fineness fine = fineness_for(triangles, std::max(2 * radius, height), [&](Fineness f) {
     const std::size_t spans = 2 * f.pieces(radius, 1) + f.pieces(height, 1);
     return revolved_triangles(spans, false, f.turn(radius));

@@ -35,18 +35,23 @@ std::string extent(double lower, double upper) {
 
 std::vector<Row> rows_of(const MeshReport& mesh) {
   const auto count = [](std::size_t number) { return std::to_string(number); };
-  return {{"Triangles", count(mesh.triangles), ""},
-          {"Vertices", count(mesh.vertices), ""},
-          {"Extent x", extent(mesh.lower_mm.x, mesh.upper_mm.x), "mm"},
-          {"Extent y", extent(mesh.lower_mm.y, mesh.upper_mm.y), "mm"},
-          {"Extent z", extent(mesh.lower_mm.z, mesh.upper_mm.z), "mm"},
-          {"Volume", readable(mesh.volume_mm3), "mm3"},
-          {"Components", count(mesh.components), ""},
-          {"Open edges", count(mesh.open_edges), ""},
-          {"Non-manifold edges", count(mesh.non_manifold_edges), ""},
-          {"Flipped triangles", count(mesh.flipped_triangles), ""},
-          {"Degenerate triangles", count(mesh.degenerate_triangles), ""},
-          {"Duplicate triangles", count(mesh.duplicate_triangles), ""}};
+  std::vector<Row> rows = {{"Triangles", count(mesh.triangles), ""},
+                           {"Vertices", count(mesh.vertices), ""},
+                           {"Extent x", extent(mesh.lower_mm.x, mesh.upper_mm.x), "mm"},
+                           {"Extent y", extent(mesh.lower_mm.y, mesh.upper_mm.y), "mm"},
+                           {"Extent z", extent(mesh.lower_mm.z, mesh.upper_mm.z), "mm"},
+                           {"Volume", readable(mesh.volume_mm3), "mm3"},
+                           {"Components", count(mesh.components), ""},
+                           {"Open edges", count(mesh.open_edges), ""},
+                           {"Non-manifold edges", count(mesh.non_manifold_edges), ""},
+                           {"Flipped triangles", count(mesh.flipped_triangles), ""},
+                           {"Degenerate triangles", count(mesh.degenerate_triangles), ""},
+                           {"Duplicate triangles", count(mesh.duplicate_triangles), ""}};
+  if (mesh.simplification) {
+    rows.push_back({"Left of the triangles", count(mesh.simplification->triangles_after), ""});
+    rows.push_back({"Moved by at most", readable(mesh.simplification->deviation_mm), "mm"});
+  }
+  return rows;
 }
 
 std::vector<Row> rows_of(const SliceReport& report, const std::vector<Layer>& layers) {

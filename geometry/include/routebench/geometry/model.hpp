@@ -3,12 +3,22 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "routebench/geometry/types.hpp"
 
 namespace routebench {
+
+/// What became of a mesh that was simplified.
+struct Simplification {
+  std::size_t triangles_before = 0;
+  std::size_t triangles_after = 0;
+  /// Largest distance between both surfaces, each looked at from the vertices and the middles of
+  /// the triangles of the other.
+  double deviation_mm = 0;
+};
 
 /// What was found in a mesh, as it came (before anything was mended).
 struct MeshReport {
@@ -24,6 +34,8 @@ struct MeshReport {
   std::size_t degenerate_triangles = 0;
   std::size_t duplicate_triangles = 0;
   double volume_mm3 = 0;  ///< signed, after mending; what the outside orientation encloses
+  std::optional<Simplification>
+      simplification;  ///< if the spec asks for one; all above is from before
 };
 
 struct ModelOptions {
@@ -43,12 +55,13 @@ struct Model {
 ///
 /// Takes  a spec: `shape:NAME?key=value&...`, `cgal:PATH?...`, or a path to an STL (binary or
 /// ASCII, told apart by
-///        content), OBJ, OFF, PLY or 3MF file. `?size=60` scales the largest side to 60 mm.
+///        content), OBJ, OFF, PLY or 3MF file. `?size=60` scales the largest side to 60 mm;
+///        `?simplify=0.1` leaves a tenth of the triangles.
 /// Returns the model moved to z = 0. x and y stay as they are unless they lie further than 1 m from
 /// the origin: then the
 ///        bounding box is moved to begin at x = y = 0 and a warning says so.
 /// Throws Error{kBadInput} in one line for what cannot be used.
-/// Cost   linear in the file and the triangles.
+/// Cost   linear in the file and the triangles; simplifying takes far longer than all else.
 [[nodiscard]] Model load_model(const std::string& spec, const ModelOptions& options = {});
 
 }  // namespace routebench

@@ -4,7 +4,9 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "routebench/harness/contender.hpp"
@@ -55,6 +57,28 @@ struct ConfiguredContender {
   std::map<std::string, std::string> key_places;  ///< of "fill.angle_deg" and the like
 };
 
+/// What somebody says of how a contender's time grows: time ~ size^exponent, other sizes fixed.
+struct Claim {
+  std::string contender;  ///< name as written
+  std::string size;       ///< one of claim_sizes()
+  double exponent = 1;
+  std::string source;
+};
+
+/// What is called a cell's size in claims: "triangles", "layers", "outline_vertices" (of all
+/// layers), "side_mm" (the largest), "extrude_mm".
+[[nodiscard]] std::span<const std::string_view> claim_sizes();
+
+/// A figure from a publication, to stand beside ours.
+struct PublishedFigure {
+  std::string model;    ///< the spec of one of the experiment's models that resembles theirs
+  std::string program;  ///< whose figure it is
+  std::string metric;   ///< of ours, that says the same
+  double value = 0;
+  std::string note;  ///< what was different, if anything
+  std::string source;
+};
+
 /// A config that was read and spread over its axes.
 struct ExperimentConfig {
   std::filesystem::path file;
@@ -66,6 +90,8 @@ struct ExperimentConfig {
   std::vector<Setting> settings;     ///< at least one
   RunOptions run;
   std::vector<ConfiguredContender> contenders;
+  std::vector<Claim> claims;  ///< change nothing that is executed; reports compare them with fits
+  std::vector<PublishedFigure> published;  ///< likewise
 
   [[nodiscard]] std::size_t cell_count() const noexcept {
     return models.size() * contenders.size() * settings.size() * seeds.size();
