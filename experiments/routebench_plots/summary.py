@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from . import scaling, sweep
+from . import claims, scaling, sweep
 from .comparison import (
     SHIFT,
     TIME_MARGIN,
