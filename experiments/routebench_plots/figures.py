@@ -222,17 +222,7 @@ def draw_all(
             report(done, len(planned))
     made = tables.tables(results, metrics)
     for name, text in (
-        (
-            "summary.md",
-            summary.to_markdown(compared, results.experiment)
-            + "".join(
-                line + "\n"
-                for line in (
-                    *claims.claims_markdown(judged),
-                    *claims.published_markdown(results),
-                )
-            ),
-        ),
+        ("summary.md", summary.to_markdown(compared, results.experiment)),
         (
             "table.md",
             tables.to_markdown(made, f"Totals of {results.experiment}"),

@@ -44,7 +44,8 @@ CREATE TABLE meta(key TEXT PRIMARY KEY, value TEXT NOT NULL);
 CREATE TABLE metric(position INTEGER PRIMARY KEY, name TEXT UNIQUE NOT NULL,
   label TEXT NOT NULL, unit TEXT NOT NULL, better TEXT NOT NULL,
   total TEXT NOT NULL, meaning TEXT NOT NULL);
-CREATE TABLE run(run_id INTEGER PRIMARY KEY, experiment TEXT NOT NULL);
+CREATE TABLE run(run_id INTEGER PRIMARY KEY, experiment TEXT NOT NULL,
+  config_resolved_json TEXT NOT NULL DEFAULT '{{}}');
 CREATE TABLE model(model_id INTEGER PRIMARY KEY, spec TEXT NOT NULL,
   mesh_hash TEXT NOT NULL, layers_hash TEXT NOT NULL,
   UNIQUE(spec, mesh_hash, layers_hash));

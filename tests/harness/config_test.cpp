@@ -308,7 +308,7 @@ INSTANTIATE_TEST_SUITE_P(
                   "dir/x.toml:3: key `sede`: unknown key of the config; did you mean `seed`?"},
         BadConfig{"far_key", with("zzzzzzzz = 3"),
                   "dir/x.toml:3: key `zzzzzzzz`: unknown key of the config; known are name, seed, "
-                  "models, optional_models, plugins, task, printer, run, contender"},
+                  "models, optional_models, plugins, task, printer, run, contender, claim, published"},
         BadConfig{"name_path", "name = \"../up\"",
                   "dir/x.toml:1: key `name`: must be made of letters, digits, - _ and . (it names "
                   "the folder of the results), not \"../up\""},

@@ -24,8 +24,7 @@ class TemplateTest(FolderTest):
         checked = self.call(*commands[0].split())
         self.assertEqual(checked.stdout.count("\npass  "), 7)
         ran = self.call(*commands[1].split())
-        self.assertRegex(ran.stderr, r"\[18/18\]")
-        self.assertNotRegex(ran.stderr, "failed|crashed|off_task")
+        self.assertIn("18 cells: 18 valid", ran.stdout)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,5 @@
-// How fast the head moves, by the printer's own limits: speed, acceleration, junction deviation.
+// How fast the head moves, by the printer's own limits: speed, acceleration, junction
+// deviation or jerk.
 
 /** Mean speed of every segment, mm/s, by the judge's look-ahead model, layer by layer. */
 function modelledSpeeds(route, printer) {
@@ -17,19 +18,18 @@ function speedsOfLayer(route, place, printer, speeds) {
   const top2 = new Float64Array(most); // speeds are squared
   const entry2 = new Float64Array(most);
   const segmentOf = new Int32Array(most).fill(-1);
+  const ways = [];
+  const fromRest = new Uint8Array(most);
   let moves = 0;
   let standing = true;
-  let before = null;
   const add = (array, number, speed, retracted, segment) => {
     const at = STRIDE * number;
     const way = [array[at + 2] - array[at], array[at + 3] - array[at + 1]];
     length[moves] = Math.hypot(way[0], way[1]);
     top2[moves] = speed * speed;
-    standing = standing || retracted;
-    if (!standing)
-      entry2[moves] = Math.min(top2[moves], top2[moves - 1], junction2(before, way, printer));
+    fromRest[moves] = standing || retracted ? 1 : 0;
+    ways.push(way);
     segmentOf[moves++] = segment;
-    before = way;
     standing = retracted;
   };
   let travel = start.travel;
@@ -42,13 +42,28 @@ function speedsOfLayer(route, place, printer, speeds) {
       add(route.segments, segment, Number(printer.extrude_mm_s), false, segment);
   }
 
-  let next2 = 0; // the last move ends at rest
+  const straight = straightStretches(ways, length, fromRest);
+  const jerk = Number(printer.jerk_mm_s || 0);
+  for (let i = 0; i < moves; i++) {
+    const slower2 = i === 0 ? top2[i] : Math.min(top2[i], top2[i - 1]);
+    entry2[i] = Math.min(slower2, jerk * jerk);
+    if (fromRest[i]) continue;
+    if (jerk > 0) {
+      entry2[i] = Math.max(entry2[i], jerkJunction2(ways[i - 1], ways[i], slower2, jerk));
+    } else {
+      const stretch = Math.min(straight[i - 1], straight[i]);
+      entry2[i] = Math.min(slower2, junction2(ways[i - 1], ways[i], stretch, printer));
+    }
+  }
+
+  const last2 = moves === 0 ? 0 : Math.min(top2[moves - 1], jerk * jerk);
+  let next2 = last2; // the last move ends at rest
   for (let i = moves - 1; i >= 0; i--) {
     entry2[i] = Math.min(entry2[i], next2 + 2 * accel * length[i]);
     next2 = entry2[i];
   }
   for (let i = 0; i < moves; i++) {
-    let exit2 = 0;
+    let exit2 = Math.min(last2, entry2[i] + 2 * accel * length[i]);
     if (i + 1 < moves) {
       entry2[i + 1] = Math.min(entry2[i + 1], entry2[i] + 2 * accel * length[i]);
       exit2 = entry2[i + 1];
@@ -64,8 +79,50 @@ function speedsOfLayer(route, place, printer, speeds) {
   }
 }
 
-/** Speed at which two moves may meet, squared. */
-function junction2(before, after, printer) {
+/** A turn slighter than this is none. Coordinates here are rounded more coarsely than the judge's. */
+const STRAIGHT_SIN = 1e-3;
+
+function goesStraightOn(before, after) {
+  const along = before[0] * after[0] + before[1] * after[1];
+  const across = before[0] * after[1] - before[1] * after[0];
+  const lengths = Math.hypot(before[0], before[1]) * Math.hypot(after[0], after[1]);
+  return along > 0 && Math.abs(across) < STRAIGHT_SIN * lengths;
+}
+
+/** Of every move the length of the straight stretch that it is a part of. */
+function straightStretches(ways, length, fromRest) {
+  const straight = new Float64Array(ways.length);
+  for (let begin = 0, end = 0; begin < ways.length; begin = end) {
+    let sum = length[begin];
+    for (end = begin + 1; end < ways.length; end++) {
+      if (fromRest[end] || !goesStraightOn(ways[end - 1], ways[end])) break;
+      sum += length[end];
+    }
+    straight.fill(sum, begin, end);
+  }
+  return straight;
+}
+
+/** Speed at which two moves may meet by the jerk of each axis, squared. */
+function jerkJunction2(before, after, top2, jerk) {
+  const top = Math.sqrt(top2);
+  const exitScale = top / Math.hypot(before[0], before[1]);
+  const entryScale = top / Math.hypot(after[0], after[1]);
+  const change = Math.max(
+    ...[0, 1].map((axis) => {
+      const exit = exitScale * before[axis];
+      const entry = entryScale * after[axis];
+      return exit * entry > 0
+        ? Math.abs(entry - exit)
+        : Math.max(Math.abs(exit), Math.abs(entry));
+    }),
+  );
+  const share = change > jerk ? jerk / change : 1;
+  return top2 * share * share;
+}
+
+/** Speed at which two moves may meet, squared; `stretch` is the shorter straight one beside them. */
+function junction2(before, after, stretch, printer) {
   const lengths = Math.hypot(before[0], before[1]) * Math.hypot(after[0], after[1]);
   const cosTurn = Math.max(
     -1,
@@ -73,5 +130,8 @@ function junction2(before, after, printer) {
   );
   const sinHalf = Math.sqrt((1 + cosTurn) / 2);
   if (sinHalf >= 1) return Infinity;
-  return (Number(printer.accel_mm_s2) * Number(printer.junction_mm) * sinHalf) / (1 - sinHalf);
+  const accel = Number(printer.accel_mm_s2);
+  const corner2 = (accel * Number(printer.junction_mm) * sinHalf) / (1 - sinHalf);
+  const isCurve = stretch < 1 && cosTurn > Math.SQRT1_2 && !goesStraightOn(before, after);
+  return isCurve ? Math.min(corner2, (accel * stretch) / Math.acos(cosTurn)) : corner2;
 }

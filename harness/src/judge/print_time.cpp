@@ -11,29 +11,50 @@
 namespace routebench::judging {
 namespace {
 
-/// A move shorter than this after a turn slighter than this (45 degrees) is a piece of a curve.
-constexpr double kShortMoveMm = 1;
+/// A stretch shorter than this beside a turn slighter than this (45 degrees) is a piece of a curve.
+constexpr double kShortStretchMm = 1;
 constexpr double kSlightTurnCos = std::numbers::sqrt2 / 2;
+/// Turns slighter than this are none: where a straight line was cut on the grid, say.
+constexpr double kStraightSin = 1e-4;
 
 /// A move as the look-ahead sees it. Speeds are squared: (mm/s)^2.
 struct Leg {
+  Point2 way;
   double length_mm = 0;
+  double straight_mm = 0;  ///< of the straight stretch that it is a part of
+  bool from_rest = false;
   double top2 = 0;    ///< nominal speed
   double entry2 = 0;  ///< as fast as it may begin
   bool extrudes = false;
 };
 
+bool goes_straight_on(const Leg& before, const Leg& after) {
+  return !after.from_rest && dot(before.way, after.way) > 0 &&
+         std::abs(cross(before.way, after.way)) < kStraightSin * before.length_mm * after.length_mm;
+}
+
+void measure_stretches(std::vector<Leg>& legs) {
+  for (std::size_t begin = 0, end = 0; begin < legs.size(); begin = end) {
+    double length_mm = legs[begin].length_mm;
+    for (end = begin + 1; end < legs.size() && goes_straight_on(legs[end - 1], legs[end]); ++end)
+      length_mm += legs[end].length_mm;
+    for (std::size_t i = begin; i < end; ++i) legs[i].straight_mm = length_mm;
+  }
+}
+
 /// Speed at which two moves may meet, squared; see print_time.
-double junction2(Point2 before, Point2 after, const Printer& printer) {
-  const double lengths = std::sqrt(dot(before, before) * dot(after, after));
+double junction2(const Leg& before, const Leg& after, const Printer& printer) {
   // cos t = -cos(turn); sin^2(t/2) = (1 - cos t) / 2.
-  const double cos_turn = std::clamp(dot(before, after) / lengths, -1.0, 1.0);
+  const double cos_turn =
+      std::clamp(dot(before.way, after.way) / (before.length_mm * after.length_mm), -1.0, 1.0);
   const double sin_half = std::sqrt((1 + cos_turn) / 2);
   if (sin_half >= 1) return std::numeric_limits<double>::infinity();
   const double corner2 = printer.accel_mm_s2 * printer.junction_mm * sin_half / (1 - sin_half);
-  const double after_mm = std::sqrt(dot(after, after));
-  if (after_mm >= kShortMoveMm || cos_turn <= kSlightTurnCos) return corner2;
-  return std::min(corner2, printer.accel_mm_s2 * after_mm / std::acos(cos_turn));
+  const double stretch_mm = std::min(before.straight_mm, after.straight_mm);
+  if (stretch_mm >= kShortStretchMm || cos_turn <= kSlightTurnCos ||
+      goes_straight_on(before, after))
+    return corner2;
+  return std::min(corner2, printer.accel_mm_s2 * stretch_mm / std::acos(cos_turn));
 }
 
 /// The change of speed of one axis between two moves. One that reverses stops on the way, so it
@@ -44,10 +65,10 @@ double axis_change(double before, double after) {
 }
 
 /// As junction2, by the jerk of each axis; both moves are as fast as the slower one may be.
-double jerk_junction2(Point2 before, Point2 after, double top2, double jerk_mm_s) {
+double jerk_junction2(const Leg& before, const Leg& after, double top2, double jerk_mm_s) {
   const double top = std::sqrt(top2);
-  const Point2 exit = (top / std::sqrt(dot(before, before))) * before;
-  const Point2 entry = (top / std::sqrt(dot(after, after))) * after;
+  const Point2 exit = (top / before.length_mm) * before.way;
+  const Point2 entry = (top / after.length_mm) * after.way;
   const double change = std::max(axis_change(exit.x, entry.x), axis_change(exit.y, entry.y));
   const double share = change > jerk_mm_s ? jerk_mm_s / change : 1;
   return top2 * share * share;
@@ -67,7 +88,6 @@ double leg_time(const Leg& leg, double entry2, double exit2, double accel) {
 PrintTime print_time(const std::vector<Move>& moves, const Printer& printer) {
   PrintTime time;
   std::vector<Leg> legs;
-  Point2 before{};
   bool standing = true;
   const double jerk2 = printer.jerk_mm_s * printer.jerk_mm_s;
   for (const Move& move : moves) {
@@ -78,18 +98,21 @@ PrintTime print_time(const std::vector<Move>& moves, const Printer& printer) {
     standing = standing || move.retracted;
     if (way != Point2{}) {
       const double top = move.extrudes ? printer.extrude_mm_s : printer.travel_mm_s;
-      Leg leg{std::sqrt(dot(way, way)), top * top, 0, move.extrudes};
-      const double slower2 = legs.empty() ? leg.top2 : std::min(leg.top2, legs.back().top2);
-      leg.entry2 = std::min(slower2, jerk2);
-      if (!standing)
-        leg.entry2 = jerk2 > 0 ? std::max(leg.entry2,
-                                          jerk_junction2(before, way, slower2, printer.jerk_mm_s))
-                               : std::min(slower2, junction2(before, way, printer));
-      legs.push_back(leg);
-      before = way;
+      legs.push_back({way, std::sqrt(dot(way, way)), 0, standing, top * top, 0, move.extrudes});
       standing = false;
     }
     standing = standing || move.retracted;
+  }
+
+  measure_stretches(legs);
+  for (std::size_t i = 0; i < legs.size(); ++i) {
+    Leg& leg = legs[i];
+    const double slower2 = i == 0 ? leg.top2 : std::min(leg.top2, legs[i - 1].top2);
+    leg.entry2 = std::min(slower2, jerk2);
+    if (leg.from_rest) continue;
+    leg.entry2 = jerk2 > 0 ? std::max(leg.entry2,
+                                      jerk_junction2(legs[i - 1], leg, slower2, printer.jerk_mm_s))
+                           : std::min(slower2, junction2(legs[i - 1], leg, printer));
   }
 
   const double last2 = legs.empty() ? 0 : std::min(legs.back().top2, jerk2);

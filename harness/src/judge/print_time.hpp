@@ -31,12 +31,15 @@ struct PrintTime {
 ///       v_j^2 = a d sin(t/2) / (1 - sin(t/2)),
 ///   unbounded straight on (t = 180 degrees), zero for a reversal (t = 0), and no more than the
 ///   nominal speed of either move. Moves of different kinds meet in the same way.
-/// - Curves. A move shorter than 1 mm after a turn by u < 45 degrees is taken for a piece of an arc
-///   of the radius L/u, which the acceleration lets be run through with no more than
+/// - Curves. Where a straight stretch shorter than 1 mm meets another at a turn by u < 45 degrees,
+///   both are taken for pieces of an arc of the radius L/u, L being the shorter one's length, which
+///   the acceleration lets be run through with no more than
 ///       v_j^2 = a L / u.
+///   Moves that turn by less than 1e-4 are one stretch, so cutting a line into pieces changes
+///   nothing.
 /// - Jerk, if the printer has one, in the place of both (Marlin's classic rule): from rest and to
-///   rest a move may have the speed j at once; where two moves meet, no axis may change its speed by
-///   more than j, an axis that reverses being counted by the larger part alone.
+///   rest a move may have the speed j at once; where two moves meet, no axis may change its speed
+///   by more than j, an axis that reverses being counted by the larger part alone.
 /// - Look-ahead. A move of length L that begins with speed v0 can end with no more than v1 with
 ///   v1^2 = v0^2 + 2 a L; what the moves after one allow is carried backwards by the same law, then
 ///   what those before it allow forwards.
@@ -48,7 +51,7 @@ struct PrintTime {
 /// Moves of no length take no time; a retraction is paid for nevertheless.
 /// Cost   linear.
 /// Source the planners of Grbl and Marlin (junction deviation: S. K. Jeon, 2011; curves:
-/// Marlin 2.0).
+/// Marlin 2.0, there by the length of the later move alone).
 [[nodiscard]] PrintTime print_time(const std::vector<Move>& moves, const Printer& printer);
 
 }  // namespace routebench::judging
