@@ -203,13 +203,19 @@ def published_markdown(results: Results) -> list[str]:
                     markdown_row(
                         [
                             markdown_text(entry["program"]),
-                            quantity(float(entry["value"]), metric.unit),
+                            _amount(float(entry["value"]), metric),
                             f"published: {markdown_text(where)}",
                         ]
                     )
                 )
             lines += _measured_rows(results, model, metric)
     return lines
+
+
+def _amount(value: float, metric: Metric) -> str:
+    """A value in the unit in which it is easy to read."""
+    scale = scale_for(metric, [value])
+    return quantity(scale(value), scale.unit)
 
 
 def _measured_rows(
@@ -227,7 +233,7 @@ def _measured_rows(
                 markdown_row(
                     [
                         markdown_text(contender.label),
-                        quantity(value.median, metric.unit),
+                        _amount(value.median, metric),
                         markdown_text(where),
                     ]
                 )

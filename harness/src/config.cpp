@@ -29,7 +29,8 @@ const std::vector<std::string> kTopKeys{"name",      "seed",  "models",   "optio
                                         "contender", "claim", "published"};
 const std::vector<std::string> kRunKeys{"repetitions", "timeout_s", "memory_mb", "jobs",
                                         "keep_layers"};
-const std::vector<std::string> kContenderKeys{"name", "shell", "fill", "order", "slicer"};
+const std::vector<std::string> kContenderKeys{"name",  "shell",  "fill",
+                                              "order", "slicer", "slicing"};
 
 /// The name is a folder under results/.
 std::string read_name(const ConfigTable& top) {
@@ -290,6 +291,14 @@ SlicerSpec read_slicer(const ConfigEntry& point, const std::string& file) {
   return slicer;
 }
 
+SliceMethod read_slicing(const ConfigEntry& point) {
+  try {
+    return slice_method(point.text());
+  } catch (const Error& error) {
+    point.refuse(error.what());
+  }
+}
+
 /// Puts the value of one axis where it belongs.
 void apply(const Axis& axis, const ConfigEntry& point, const std::string& file,
            ConfiguredContender& contender) {
@@ -300,6 +309,10 @@ void apply(const Axis& axis, const ConfigEntry& point, const std::string& file,
   }
   if (axis.name == "slicer") {
     contender.spec.slicer = read_slicer(point, file);
+    return;
+  }
+  if (axis.name == "slicing") {
+    contender.spec.slicing = read_slicing(point);
     return;
   }
   const std::size_t dot = axis.name.find('.');
@@ -324,15 +337,20 @@ void add_contenders(const ConfigTable& table, const std::string& file,
   table.require_known(kContenderKeys);
   const ConfigEntry name = table.at("name");
   if (name.text().empty()) name.refuse("must not be empty");
-  if (table.find("slicer"))
-    for (const char* slot : {"shell", "fill", "order"})
-      if (const auto found = table.find(slot))
-        found->refuse("a contender with a `slicer` has no planners; give either");
-  if (!table.find("slicer") && !table.find("shell") && !table.find("fill"))
+  for (const char* whole : {"slicer", "slicing"})
+    if (table.find(whole))
+      for (const char* other : {"shell", "fill", "order", "slicer", "slicing"})
+        if (const auto found = table.find(other); found && std::string_view(other) != whole)
+          found->refuse("a contender with a `" + std::string(whole) +
+                        "` has no planners; give either");
+  if (!table.find("slicer") && !table.find("slicing") && !table.find("shell") &&
+      !table.find("fill"))
     name.refuse("the contender has neither `shell` nor `fill` nor `slicer`; give at least one");
 
   std::vector<Axis> axes;
   if (const auto slicer = table.find("slicer")) axes.push_back(slicer_axis(*slicer));
+  if (const auto slicing = table.find("slicing"))
+    axes.push_back(axis_of(*slicing, "slicing", ValueShape::kSingle));
   add_slot_axes(table, "shell", file, axes);
   add_slot_axes(table, "fill", file, axes);
   if (const auto order = table.find("order"))

@@ -47,7 +47,7 @@ Json keep_json(const KeepLayers& keep) {
 
 void check_contenders(const ExperimentConfig& config, const Registry& registry) {
   for (const ConfiguredContender& contender : config.contenders) {
-    if (contender.spec.slicer) continue;  // checked when it was read
+    if (contender.spec.slicer || contender.spec.slicing) continue;  // checked when it was read
     if (contender.spec.shell) check_slot(contender, "shell", *contender.spec.shell, registry);
     if (contender.spec.fill) check_slot(contender, "fill", *contender.spec.fill, registry);
     try {
@@ -69,9 +69,12 @@ std::string resolved_json(const ExperimentConfig& config, const Registry& regist
     (model.optional ? optional_models : models).push_back(model.spec);
   Json contenders = Json::array();
   for (const ConfiguredContender& contender : config.contenders) {
-    Json entry = contender.spec.slicer ? Json{{"name", contender.spec.name},
-                                              {"slicer", json_of(*contender.spec.slicer)}}
-                                       : json_of(Contender(contender.spec, registry));
+    Json entry =
+        contender.spec.slicing
+            ? Json{{"name", contender.spec.name}, {"slicing", to_string(*contender.spec.slicing)}}
+        : contender.spec.slicer
+            ? Json{{"name", contender.spec.name}, {"slicer", json_of(*contender.spec.slicer)}}
+            : json_of(Contender(contender.spec, registry));
     entry["base_name"] = contender.base_name;
     contenders.push_back(std::move(entry));
   }

@@ -19,17 +19,22 @@ std::int64_t thread_cpu_ns() {
 
 }  // namespace
 
+void add_time_of(const std::function<void()>& work, PlanTime& time) {
+  using Clock = std::chrono::steady_clock;
+  const std::int64_t cpu_begin = thread_cpu_ns();
+  const Clock::time_point begin = Clock::now();
+  work();
+  const Clock::time_point end = Clock::now();
+  time.cpu_ns += thread_cpu_ns() - cpu_begin;
+  time.wall_ns += std::chrono::duration_cast<std::chrono::nanoseconds>(end - begin).count();
+}
+
 Route timed_plan(const Planner& planner, const Layer& layer, const PlanContext& context,
                  PlanTime& time) {
   if (const auto* process = dynamic_cast<const ProcessPlanner*>(&planner))
     return process->plan(layer, context, time);
-  using Clock = std::chrono::steady_clock;
-  const std::int64_t cpu_begin = thread_cpu_ns();
-  const Clock::time_point begin = Clock::now();
-  Route route = planner.plan(layer, context);
-  const Clock::time_point end = Clock::now();
-  time.cpu_ns += thread_cpu_ns() - cpu_begin;
-  time.wall_ns += std::chrono::duration_cast<std::chrono::nanoseconds>(end - begin).count();
+  Route route;
+  add_time_of([&] { route = planner.plan(layer, context); }, time);
   return route;
 }
 

@@ -1,9 +1,14 @@
 #pragma once
 /// How long plan() takes.
 
+#include <functional>
+
 #include "routebench/harness/contender.hpp"
 
 namespace routebench {
+
+/// Does work once and adds the time that it took; nothing if it throws.
+void add_time_of(const std::function<void()>& work, PlanTime& time);
 
 /// Calls plan() once and adds the time that it took; nothing if it throws. A planner that is a
 /// program of its own is timed as ProcessPlanner says.

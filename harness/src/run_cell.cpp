@@ -1,12 +1,16 @@
 #include "run_cell.hpp"
 
 #include <algorithm>
+#include <functional>
 
 #include "byte_stream.hpp"
 #include "json_parts.hpp"
+#include "plan_timing.hpp"
 #include "routebench/geometry/error.hpp"
 #include "routebench/geometry/model.hpp"
 #include "routebench/geometry/parallel.hpp"
+#include "routebench/geometry/region.hpp"
+#include "routebench/geometry/slice.hpp"
 #include "routebench/harness/gcode_score.hpp"
 #include "routebench/harness/metrics.hpp"
 #include "routebench/planning/sha256.hpp"
@@ -129,20 +133,29 @@ struct Planned {
   TimingSample timing;
 };
 
+/// Does work and adds the page faults that it met.
+void count_faults(const std::function<void()>& work, TimingSample& sample) {
+  rusage before{}, after{};
+  getrusage(RUSAGE_SELF, &before);
+  work();
+  getrusage(RUSAGE_SELF, &after);
+  sample.minor_faults += after.ru_minflt - before.ru_minflt;
+  sample.major_faults += after.ru_majflt - before.ru_majflt;
+}
+
 Planned plan(const CellWork& work, ChildProgress& progress) {
   const SlicedModel& sliced = work.model->sliced;
   progress.phase = ChildProgress::kPlanning;
   const auto& contender = std::get<Contender>(*work.worker);
-  rusage before{}, after{};
-  getrusage(RUSAGE_SELF, &before);
   Planned planned;
-  planned.layers = plan_layers(contender, *work.model, all_layers(sliced), work.judge->task(),
-                               work.seed, {}, told_loop(sliced.layers, progress));
-  getrusage(RUSAGE_SELF, &after);
+  count_faults(
+      [&] {
+        planned.layers = plan_layers(contender, *work.model, all_layers(sliced), work.judge->task(),
+                                     work.seed, {}, told_loop(sliced.layers, progress));
+      },
+      planned.timing);
   for (const PlannedLayer& layer : planned.layers)
     planned.timing.layers.push_back({layer.plan_wall_ns, layer.plan_cpu_ns});
-  planned.timing.minor_faults = after.ru_minflt - before.ru_minflt;
-  planned.timing.major_faults = after.ru_majflt - before.ru_majflt;
   // Resident pages that were inherited are part of it, for every cell alike.
   planned.timing.peak_rss_bytes = static_cast<std::int64_t>(contender.peak_rss_bytes());
   return planned;
@@ -150,6 +163,7 @@ Planned plan(const CellWork& work, ChildProgress& progress) {
 
 std::string place_of(const ChildEnd& end) {
   if (end.phase == ChildProgress::kSlicing) return " while the slicer ran";
+  if (end.phase == ChildProgress::kCutting) return " while cutting layers";
   if (end.layer < 0) return " before the first layer";
   return std::string(end.phase == ChildProgress::kJudging ? " while judging" : " while planning") +
          " layer " + std::to_string(end.layer);
@@ -205,11 +219,71 @@ std::string execute_slicer(const Slicer& slicer, const CellWork& work, ChildProg
   return encode(result);
 }
 
+struct Cut {
+  std::vector<Layer> layers;
+  TimingSample timing;
+};
+
+/// Cuts the model anew, on one thread.
+Cut cut(SliceMethod method, const CellWork& work, ChildProgress& progress) {
+  progress.phase = ChildProgress::kCutting;
+  const SlicedModel& sliced = work.model->sliced;
+  const Task& task = work.judge->task();
+  if (!sliced.mesh)
+    throw Error(ErrorKind::kBadInput, "nothing to cut: the model is a file of layers");
+  const Model model = load_model(sliced.spec, {.repair = work.repair});
+  const SliceOptions options{.layer_height_mm = task.layer_height_mm,
+                             .method = method,
+                             .repair = work.repair,
+                             .cell_mm = task.line_width_mm};
+  Cut made;
+  PlanTime time;
+  const auto slice = [&] { made.layers = slice_mesh(model.mesh, options, sliced.spec).layers; };
+  count_faults([&] { add_time_of(slice, time); }, made.timing);
+  made.timing.layers = {time};
+  made.timing.cell = time;
+  made.timing.peak_rss_bytes = static_cast<std::int64_t>(peak_rss_bytes());
+  return made;
+}
+
+/// Layers are judged by the share of the model's that they cover and by what lies outside these.
+CellResult judge_cut(const CellWork& work, Cut made) {
+  const std::vector<Layer>& wanted = work.model->sliced.layers;
+  double wanted_mm2 = 0, covered_mm2 = 0, outside_mm2 = 0;
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    const Polygons own = i < made.layers.size() ? made.layers[i].polygons : Polygons();
+    const double area = area_mm2(wanted[i].polygons);
+    const bool same = own == wanted[i].polygons;
+    wanted_mm2 += area;
+    covered_mm2 += same ? area : area_mm2(intersect(own, wanted[i].polygons));
+    outside_mm2 += same ? 0 : area_mm2(subtract(own, wanted[i].polygons));
+  }
+  const double covered = covered_mm2 / wanted_mm2, spilled = outside_mm2 / wanted_mm2;
+  const GateLimits& gate = work.judge->task().gate;
+  CellResult result;
+  result.outcome = Outcome::kValid;
+  if (covered < gate.covered_min || spilled > gate.spilled_max) {
+    result.outcome = Outcome::kOffTask;
+    result.reason = "its layers cover " + to_string(ParamValue(covered)) +
+                    " of the model's and exceed them by " + to_string(ParamValue(spilled));
+  }
+  result.route_hash = hash_of_layers(made.layers);
+  result.totals.resize(metric_table().size());
+  result.totals.at(metric_index("covered")) = covered;
+  result.totals.at(metric_index("spilled")) = spilled;
+  result.totals.at(metric_index("peak_rss_bytes")) =
+      static_cast<double>(made.timing.peak_rss_bytes);
+  result.timing = std::move(made.timing);
+  return result;
+}
+
 }  // namespace
 
 std::string execute_cell(const CellWork& work, ChildProgress& progress) {
   if (const Slicer* slicer = std::get_if<Slicer>(work.worker))
     return execute_slicer(*slicer, work, progress);
+  if (const SliceMethod* method = std::get_if<SliceMethod>(work.worker))
+    return encode(judge_cut(work, cut(*method, work, progress)));
   Planned plan_of_cell = plan(work, progress);
   const std::vector<PlannedLayer>& planned = plan_of_cell.layers;
   CellResult result;
@@ -226,9 +300,15 @@ std::string execute_cell(const CellWork& work, ChildProgress& progress) {
 }
 
 std::string time_cell(const CellWork& work, ChildProgress& progress) {
-  Planned planned = plan(work, progress);
   CellResult result;
   result.outcome = Outcome::kValid;
+  if (const SliceMethod* method = std::get_if<SliceMethod>(work.worker)) {
+    Cut made = cut(*method, work, progress);
+    result.timing = std::move(made.timing);
+    result.route_hash = hash_of_layers(made.layers);
+    return encode(result);
+  }
+  Planned planned = plan(work, progress);
   result.timing = std::move(planned.timing);
   result.route_hash = hash_of_route(planned.layers);
   return encode(result);

@@ -17,14 +17,17 @@
 
 namespace routebench {
 
+/// What a contender is: planners, a foreign slicer, or a way of cutting layers.
+using Worker = std::variant<Contender, Slicer, SliceMethod>;
+
 /// One cell, ready to be executed. Refers to what its parent holds.
 struct CellWork {
-  const std::variant<Contender, Slicer>* worker = nullptr;
+  const Worker* worker = nullptr;
   const PreparedModel* model = nullptr;
   const Judge* judge = nullptr;
   std::uint64_t seed = 1;
   std::vector<std::size_t> kept_layers;  ///< places whose routes are sent along
-  // For slicers alone:
+  // For slicers and ways of cutting alone:
   bool repair = false;            ///< whether the model was mended; see ModelOptions
   std::filesystem::path scratch;  ///< a folder that may be written
   int memory_mb = 0;              ///< that the slicer may take

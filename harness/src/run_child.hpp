@@ -21,7 +21,7 @@ struct ChildLimits {
 
 /// Where a child is; it writes, its parent reads when it has died.
 struct ChildProgress {
-  enum Phase : int { kPlanning, kJudging, kSlicing };
+  enum Phase : int { kPlanning, kJudging, kSlicing, kCutting };
   std::atomic<int> phase{kPlanning};
   std::atomic<std::int64_t> layer{-1};  ///< the last one begun; -1: none
 };

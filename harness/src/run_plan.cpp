@@ -107,6 +107,9 @@ ReadyContender ready_contender(const ConfiguredContender& configured, const Plan
     ContenderRecord record = record_of(configured, {{"slicer", json_of(slicer)}});
     return {std::move(record), std::move(slicer), ""};
   }
+  if (configured.spec.slicing)
+    return {record_of(configured, {{"slicing", to_string(*configured.spec.slicing)}}),
+            *configured.spec.slicing, ""};
   Contender contender(configured.spec, planners.registry);
   Json variant = json_of(contender);
   variant.erase("name");

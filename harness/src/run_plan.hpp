@@ -22,10 +22,9 @@ struct ReadyModel {
   double work = 0;  ///< how much there is to plan and to judge; see work_of
 };
 
-/// Planners or a foreign slicer.
 struct ReadyContender {
   ContenderRecord record;
-  std::variant<Contender, Slicer> worker;
+  Worker worker;
   std::string plugin_hashes;  ///< of the plugins that its planners come from
 };
 

@@ -45,7 +45,7 @@ CREATE TABLE metric(position INTEGER PRIMARY KEY, name TEXT UNIQUE NOT NULL,
   label TEXT NOT NULL, unit TEXT NOT NULL, better TEXT NOT NULL,
   total TEXT NOT NULL, meaning TEXT NOT NULL);
 CREATE TABLE run(run_id INTEGER PRIMARY KEY, experiment TEXT NOT NULL,
-  config_resolved_json TEXT NOT NULL DEFAULT '{{}}');
+  config_resolved_json TEXT NOT NULL);
 CREATE TABLE model(model_id INTEGER PRIMARY KEY, spec TEXT NOT NULL,
   mesh_hash TEXT NOT NULL, layers_hash TEXT NOT NULL,
   UNIQUE(spec, mesh_hash, layers_hash));
@@ -116,7 +116,7 @@ class Database:
         for place, metric in enumerate(METRICS):
             self._insert("metric", place, *metric, f"meaning of {metric[0]}")
         self.run = 1
-        self._insert("run", self.run, "synthetic")
+        self._insert("run", self.run, "synthetic", "{}")
 
     def close(self) -> Path:
         """Writes the file and returns where it is."""
@@ -190,7 +190,7 @@ class Database:
     def next_run(self) -> None:
         """Begins another run: what follows belongs to it."""
         self.run += 1
-        self._insert("run", self.run, "synthetic")
+        self._insert("run", self.run, "synthetic", "{}")
 
     def layers(
         self,

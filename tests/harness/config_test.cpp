@@ -74,6 +74,50 @@ std::vector<std::string> setting_labels(const ExperimentConfig& config) {
   return labels;
 }
 
+constexpr const char* kClaim = "[[claim]]\ncontender = \"c\"\nsize = \"layers\"\nexponent = 1\n";
+constexpr const char* kPublished =
+    "[[published]]\nmodel = \"shape:box\"\nprogram = \"theirs\"\nmetric = \"travel_mm\"\n"
+    "value = 12.5\nsource = \"a paper\"\n";
+
+TEST(Config, ClaimsAndPublishedFiguresAreKept) {
+  const ExperimentConfig config = parsed(std::string(kHead) + kContender + kClaim + kPublished);
+  ASSERT_EQ(config.claims.size(), 1U);
+  EXPECT_EQ(config.claims[0].contender, "c");
+  EXPECT_EQ(config.claims[0].size, "layers");
+  EXPECT_EQ(config.claims[0].exponent, 1);
+  ASSERT_EQ(config.published.size(), 1U);
+  EXPECT_EQ(config.published[0].value, 12.5);
+  const std::string resolved = resolved_json(config, idle_planners());
+  EXPECT_NE(resolved.find("\"claims\""), std::string::npos);
+  EXPECT_NE(resolved.find("a paper"), std::string::npos);
+}
+
+TEST(Config, ClaimsAreAboutWhatTheConfigHas) {
+  const auto replaced = [](std::string text, const std::string& from, const std::string& to) {
+    return text.replace(text.find(from), from.size(), to);
+  };
+  const std::string head = std::string(kHead) + kContender;
+  EXPECT_EQ(complaint_about(head + replaced(kClaim, "\"c\"", "\"d\"")),
+            "dir/x.toml:7: key `contender`: there is no `d`; did you mean `c`?");
+  EXPECT_EQ(complaint_about(head + replaced(kClaim, "layers", "layer")),
+            "dir/x.toml:8: key `size`: there is no `layer`; did you mean `layers`?");
+  EXPECT_EQ(complaint_about(head + replaced(kPublished, "travel_mm", "travel")),
+            "dir/x.toml:9: key `metric`: there is no `travel`; did you mean `travels`?");
+  EXPECT_EQ(complaint_about(head + replaced(kPublished, "shape:box", "shape:bow")),
+            "dir/x.toml:7: key `model`: there is no `shape:bow`; did you mean `shape:box`?");
+}
+
+TEST(Config, AWayOfSlicingIsAContenderOfItsOwn) {
+  const ExperimentConfig config = parsed(
+      std::string(kHead) + "[[contender]]\nname = \"c\"\nslicing = [\"bucket\", \"naive\"]\n");
+  EXPECT_EQ(contender_names(config),
+            (std::vector<std::string>{"c [slicing=bucket]", "c [slicing=naive]"}));
+  EXPECT_EQ(config.contenders[1].spec.slicing, SliceMethod::kNaive);
+  EXPECT_NE(complaint_about(std::string(kHead) + kContender + "slicing = \"bucket\"\n")
+                .find("give either"),
+            std::string::npos);
+}
+
 TEST(Config, WhatIsNotWrittenHasTheDocumentedDefault) {
   const ExperimentConfig config = parsed(std::string(kHead) + kContender);
   EXPECT_EQ(config.name, "t");
@@ -306,9 +350,10 @@ INSTANTIATE_TEST_SUITE_P(
         BadConfig{"empty", "", "dir/x.toml:1: key `name`: missing from the config"},
         BadConfig{"top_key", with("sede = 3"),
                   "dir/x.toml:3: key `sede`: unknown key of the config; did you mean `seed`?"},
-        BadConfig{"far_key", with("zzzzzzzz = 3"),
-                  "dir/x.toml:3: key `zzzzzzzz`: unknown key of the config; known are name, seed, "
-                  "models, optional_models, plugins, task, printer, run, contender, claim, published"},
+        BadConfig{
+            "far_key", with("zzzzzzzz = 3"),
+            "dir/x.toml:3: key `zzzzzzzz`: unknown key of the config; known are name, seed, "
+            "models, optional_models, plugins, task, printer, run, contender, claim, published"},
         BadConfig{"name_path", "name = \"../up\"",
                   "dir/x.toml:1: key `name`: must be made of letters, digits, - _ and . (it names "
                   "the folder of the results), not \"../up\""},

@@ -195,11 +195,24 @@ Slices slice_by_voxels(const Mesh& mesh, const Planes& planes, const SliceOption
 
 }  // namespace
 
+std::string_view to_string(SliceMethod method) {
+  switch (method) {
+    case SliceMethod::kBucket:
+      return "bucket";
+    case SliceMethod::kSweep:
+      return "sweep";
+    case SliceMethod::kNaive:
+      return "naive";
+    case SliceMethod::kVoxel:
+      break;
+  }
+  return "voxel";
+}
+
 SliceMethod slice_method(std::string_view name) {
-  if (name == "bucket") return SliceMethod::kBucket;
-  if (name == "sweep") return SliceMethod::kSweep;
-  if (name == "naive") return SliceMethod::kNaive;
-  if (name == "voxel") return SliceMethod::kVoxel;
+  for (const SliceMethod method :
+       {SliceMethod::kBucket, SliceMethod::kSweep, SliceMethod::kNaive, SliceMethod::kVoxel})
+    if (name == to_string(method)) return method;
   throw Error(ErrorKind::kBadUsage, "unknown slicing method '" + std::string(name) +
                                         "': choose bucket, sweep, naive or voxel");
 }

@@ -28,6 +28,7 @@ enum class SliceMethod {
 
 /// Throws Error{kBadUsage} for an unknown name.
 [[nodiscard]] SliceMethod slice_method(std::string_view name);
+[[nodiscard]] std::string_view to_string(SliceMethod method);  ///< "bucket" and so on
 
 struct SliceOptions {
   double layer_height_mm = 0.2;

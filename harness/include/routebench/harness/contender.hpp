@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "routebench/geometry/slice.hpp"
 #include "routebench/geometry/types.hpp"
 #include "routebench/harness/demand.hpp"
 #include "routebench/harness/slicer_spec.hpp"
@@ -39,13 +40,14 @@ enum class LayerOrder {
 /// Throws Error{kBadInput} for an unknown name.
 [[nodiscard]] LayerOrder layer_order(std::string_view name);
 
-/// Planners in one or both slots, or a foreign slicer.
+/// Planners in one or both slots, a foreign slicer, or a way of cutting layers.
 struct ContenderSpec {
   std::string name;
   std::optional<SlotSpec> shell;
   std::optional<SlotSpec> fill;
   LayerOrder order = LayerOrder::kIsland;
-  std::optional<SlicerSpec> slicer = std::nullopt;  ///< then there is no slot
+  std::optional<SlicerSpec> slicer = std::nullopt;    ///< then there is no slot
+  std::optional<SliceMethod> slicing = std::nullopt;  ///< likewise: cuts layers, plans nothing
 };
 
 /// What a stroke is for.
