@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "chordal_axis.hpp"
@@ -17,6 +18,9 @@ namespace {
 
 constexpr double kWidthRatio = 1.25;  // of the places that one stroke takes
 constexpr double kStraightMm = 0.004;
+// A part is compact if its line is at most so many of the greatest widths long.
+constexpr double kCompact = 1.5;
+constexpr double kStepShare = 1.0 / 16;  // of the greatest width, between places that are compared
 constexpr int kHalvings = 8;
 // A dot is so much narrower than its place, so that it has a length.
 constexpr double kDotShare = 0.8;
@@ -60,12 +64,13 @@ class StrokeCutter {
       : rule_(rule), edges_(edges), origin_(origin), strokes_(strokes) {}
 
   void cut(const MiddleLine& line) {
-    std::size_t begin = 0;
-    for (std::size_t i = 0; i <= line.points.size(); ++i) {
-      if (i < line.points.size() && 2 * line.radii_mm[i] >= rule_.min_width_mm) continue;
-      if (i > begin) cut_by_width(line, begin, i - 1);
-      begin = i + 1;
-    }
+    const bool is_compact = rule_.width == CentreLineWidth::kInscribed && line.free_front &&
+                            line.free_back && line.points.size() >= 2 &&
+                            length_mm(line.points) < kCompact * rule_.max_width_mm;
+    if (is_compact)
+      cut_where_wide(largest_bead(line));
+    else
+      cut_where_wide(line);
   }
 
   /// Lays a dot at the place that is farthest from the boundary, if that is wide enough.
@@ -92,6 +97,15 @@ class StrokeCutter {
   }
 
  private:
+  void cut_where_wide(const MiddleLine& line) {
+    std::size_t begin = 0;
+    for (std::size_t i = 0; i <= line.points.size(); ++i) {
+      if (i < line.points.size() && 2 * line.radii_mm[i] >= rule_.min_width_mm) continue;
+      if (i > begin) cut_by_width(line, begin, i - 1);
+      begin = i + 1;
+    }
+  }
+
   [[nodiscard]] double width_at(const MiddleLine& line, std::size_t i) const {
     return std::min(2 * line.radii_mm[i], rule_.max_width_mm);
   }
@@ -141,6 +155,59 @@ class StrokeCutter {
       if (const Point2 q = snap(p) + origin_; stroke.points.empty() || stroke.points.back() != q)
         stroke.points.push_back(q);
     if (stroke.points.size() >= 2) strokes_.push_back(std::move(stroke));
+  }
+
+  /// A line's points no farther apart than a share of the greatest width, with their radii.
+  [[nodiscard]] MiddleLine resampled(const MiddleLine& line) const {
+    MiddleLine fine{
+        {line.points.front()}, {line.radii_mm.front()}, line.free_front, line.free_back};
+    for (std::size_t i = 1; i < line.points.size(); ++i) {
+      const Point2 a = line.points[i - 1], b = line.points[i];
+      const int steps = static_cast<int>(distance(a, b) / (kStepShare * rule_.max_width_mm)) + 1;
+      for (int k = 1; k < steps; ++k) {
+        fine.points.push_back(lerp(a, b, 1.0 * k / steps));
+        fine.radii_mm.push_back(width_at(fine.points.back()) / 2);
+      }
+      fine.points.push_back(b);
+      fine.radii_mm.push_back(line.radii_mm[i]);
+    }
+    return fine;
+  }
+
+  /// Where a bead that begins at one point is largest if it ends there, on the way to another.
+  [[nodiscard]] std::size_t largest_to(const MiddleLine& line, std::size_t from,
+                                       std::size_t to) const {
+    double width = width_at(line, from), length = 0, largest = 0;
+    std::size_t best = from;
+    for (std::size_t i = from; i != to;) {
+      const std::size_t next = to > from ? i + 1 : i - 1;
+      length += distance(line.points[i], line.points[next]);
+      width = std::min(width, width_at(line, next));
+      i = next;
+      const double area = width * (length + std::numbers::pi / 4 * width);
+      if (area < largest) continue;
+      largest = area;
+      best = i;
+    }
+    return best;
+  }
+
+  /// A compact part: of all beads along its line about the largest. Its ends run into corners, and
+  /// with them the bead would be no wider than those.
+  [[nodiscard]] MiddleLine largest_bead(const MiddleLine& whole) const {
+    MiddleLine line = resampled(whole);
+    const auto widest = std::max_element(line.radii_mm.begin(), line.radii_mm.end());
+    const auto peak = static_cast<std::size_t>(widest - line.radii_mm.begin());
+    const std::size_t back = largest_to(line, peak, line.points.size() - 1);
+    const std::size_t front = largest_to(line, back, 0);
+    if (back - front < 1) return line;
+    const auto cut = [&](auto& values) {
+      values.resize(back + 1);
+      values.erase(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(front));
+    };
+    cut(line.points);
+    cut(line.radii_mm);
+    return line;
   }
 
   [[nodiscard]] double width_of(const std::vector<Point2>& points) const {

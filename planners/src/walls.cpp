@@ -67,19 +67,19 @@ Polygons wall_gaps(const Polygons& polygons, const std::vector<Polygons>& region
     // Where nothing is narrow, the wall's place grows back to where it came from.
     const double step_mm = wall == 0 ? reach_of(0) : context.spacing_mm;
     if (area_mm2(before) - grown_area_mm2(region, step_mm) < least_mm2) continue;
-    gap_mm2 += add(wall == 0 ? before : offset(before, -reach_of(wall)));
-    gap_mm2 -= add(offset(region, reach_of(wall)));
+    gap_mm2 += add(wall == 0 ? before : offset(before, -reach_of(wall), Join::kSquare));
+    gap_mm2 -= add(offset(region, reach_of(wall), Join::kSquare));
   }
   if (gap_mm2 < least_mm2) return {};
   return polygons_from_rings(std::move(rings), FillRule::kEvenOdd);
 }
 
 std::vector<Stroke> gap_lines(const Polygons& polygons, const std::vector<Polygons>& regions,
-                              int count, const PlanContext& context) {
+                              int count, double widest_mm, const PlanContext& context) {
   const double narrowest_mm = context.line_width_mm / 3;  // less is left to what beads spread
   return centre_lines(wall_gaps(polygons, regions, count, context),
                       {.min_width_mm = narrowest_mm,
-                       .max_width_mm = context.line_width_mm,
+                       .max_width_mm = widest_mm,
                        .min_length_mm = context.line_width_mm / 2,
                        .width = CentreLineWidth::kInscribed},
                       context);

@@ -22,15 +22,17 @@ namespace routebench {
 /// between walls in which no further one fits. What lies inside the last of them is none of it.
 ///
 /// Takes   polygons and their wall_regions, fewer than `count` if no more fit.
-/// Returns polygons, with slivers of a few micrometres among them.
+/// Returns polygons, with slivers of a few micrometres among them, and what round beads leave in
+/// sharp corners.
 /// Cost    linear where nothing is narrow; else two offsets a wall and one Boolean operation.
 [[nodiscard]] Polygons wall_gaps(const Polygons& polygons, const std::vector<Polygons>& regions,
                                  int count, const PlanContext& context);
 
-/// Lines along the middle of wall_gaps, each as wide as its gap: from a third of a line to a line.
+/// Lines along the middle of wall_gaps, each as wide as its gap: from a third of a line width to
+/// widest_mm.
 [[nodiscard]] std::vector<Stroke> gap_lines(const Polygons& polygons,
                                             const std::vector<Polygons>& regions, int count,
-                                            const PlanContext& context);
+                                            double widest_mm, const PlanContext& context);
 
 /// All rings of polygons: each outer one followed by its holes.
 [[nodiscard]] std::vector<Ring> rings_of(const Polygons& polygons);
