@@ -165,10 +165,7 @@ Polygons polygons_from_rings(std::vector<Ring> rings, FillRule rule) {
 Polygons offset(const Polygons& polygons, double distance_mm, Join join) {
   if (distance_mm == 0 || polygons.empty()) return polygons;
   cl::ClipperOffset offsetter(kMiterLimit, kArcToleranceMm * kGridUnitsPerMm);
-  offsetter.AddPaths(to_clipper(polygons),
-                     join == Join::kMiter    ? cl::jtMiter
-                     : join == Join::kSquare ? cl::jtSquare
-                                             : cl::jtRound,
+  offsetter.AddPaths(to_clipper(polygons), join == Join::kMiter ? cl::jtMiter : cl::jtRound,
                      cl::etClosedPolygon);
   cl::Paths paths;
   offsetter.Execute(paths, distance_mm * kGridUnitsPerMm);

@@ -18,13 +18,36 @@ namespace {
 
 constexpr double kWidthRatio = 1.25;  // of the places that one stroke takes
 constexpr double kStraightMm = 0.004;
-// A part is compact if its line is at most so many of the greatest widths long.
-constexpr double kCompact = 1.5;
-constexpr double kStepShare = 1.0 / 16;  // of the greatest width, between places that are compared
+// A part is compact if it is at most so many of the greatest widths long.
+constexpr double kCompact = 2;
+constexpr int kAxisSteps = 12;  // either way from its centre
 constexpr int kHalvings = 8;
 // A dot is so much narrower than its place, so that it has a length.
 constexpr double kDotShare = 0.8;
 constexpr double kDotSamples = 8;
+
+/// The centre of a ring's area and the direction in which it is longest.
+void axis_of(const Ring& ring, Point2& centre, Point2& along) {
+  const Point2 base = ring.front();
+  double area = 0, xx = 0, xy = 0, yy = 0;
+  Point2 sum;
+  for (std::size_t i = 1; i + 1 < ring.size(); ++i) {
+    const Point2 a = ring[i] - base, b = ring[i + 1] - base, c = a + b;
+    const double part = cross(a, b);
+    area += part;
+    sum = sum + part / 3 * c;
+    xx += part * (a.x * a.x + b.x * b.x + c.x * c.x) / 12;
+    xy += part * (a.x * a.y + b.x * b.y + c.x * c.y) / 12;
+    yy += part * (a.y * a.y + b.y * b.y + c.y * c.y) / 12;
+  }
+  const Point2 middle = (1 / area) * sum;
+  centre = base + middle;
+  xx -= area * middle.x * middle.x;
+  xy -= area * middle.x * middle.y;
+  yy -= area * middle.y * middle.y;
+  const double angle = std::atan2(2 * xy, xx - yy) / 2;
+  along = {std::cos(angle), std::sin(angle)};
+}
 
 /// Marks the points that a polyline needs to stay within kStraightMm.
 void mark_needed(const std::vector<Point2>& points, std::vector<bool>& needed) {
@@ -63,14 +86,34 @@ class StrokeCutter {
                std::vector<Stroke>& strokes)
       : rule_(rule), edges_(edges), origin_(origin), strokes_(strokes) {}
 
-  void cut(const MiddleLine& line) {
-    const bool is_compact = rule_.width == CentreLineWidth::kInscribed && line.free_front &&
-                            line.free_back && line.points.size() >= 2 &&
-                            length_mm(line.points) < kCompact * rule_.max_width_mm;
-    if (is_compact)
-      cut_where_wide(largest_bead(line));
-    else
-      cut_where_wide(line);
+  void cut(const MiddleLine& line) { cut_where_wide(line); }
+
+  /// Lays the largest bead on the long axis of a compact part; false if it is none.
+  bool cut_compact(const Polygon& polygon) {
+    if (rule_.width != CentreLineWidth::kInscribed || !polygon.holes.empty()) return false;
+    const Box2 box = bounding_box({polygon});
+    const double extent_mm = distance(box.lower, box.upper);
+    if (extent_mm > kCompact * rule_.max_width_mm) return false;
+    Point2 centre, along;
+    axis_of(polygon.outer, centre, along);
+    if (!edges_.contains(centre)) return false;
+    MiddleLine line;
+    line.free_front = line.free_back = true;
+    for (int i = -kAxisSteps; i <= kAxisSteps; ++i) {
+      const Point2 p = centre + (extent_mm / 2 * i / kAxisSteps) * along;
+      if (!edges_.contains(p)) {
+        if (i > 0) break;
+        line.points.clear();
+        line.radii_mm.clear();
+        continue;
+      }
+      line.points.push_back(p);
+      line.radii_mm.push_back(width_at(p) / 2);
+    }
+    if (line.points.size() < 2) return false;
+    const std::size_t before = strokes_.size();
+    cut_where_wide(largest_bead(line));
+    return strokes_.size() > before;
   }
 
   /// Lays a dot at the place that is farthest from the boundary, if that is wide enough.
@@ -157,23 +200,6 @@ class StrokeCutter {
     if (stroke.points.size() >= 2) strokes_.push_back(std::move(stroke));
   }
 
-  /// A line's points no farther apart than a share of the greatest width, with their radii.
-  [[nodiscard]] MiddleLine resampled(const MiddleLine& line) const {
-    MiddleLine fine{
-        {line.points.front()}, {line.radii_mm.front()}, line.free_front, line.free_back};
-    for (std::size_t i = 1; i < line.points.size(); ++i) {
-      const Point2 a = line.points[i - 1], b = line.points[i];
-      const int steps = static_cast<int>(distance(a, b) / (kStepShare * rule_.max_width_mm)) + 1;
-      for (int k = 1; k < steps; ++k) {
-        fine.points.push_back(lerp(a, b, 1.0 * k / steps));
-        fine.radii_mm.push_back(width_at(fine.points.back()) / 2);
-      }
-      fine.points.push_back(b);
-      fine.radii_mm.push_back(line.radii_mm[i]);
-    }
-    return fine;
-  }
-
   /// Where a bead that begins at one point is largest if it ends there, on the way to another.
   [[nodiscard]] std::size_t largest_to(const MiddleLine& line, std::size_t from,
                                        std::size_t to) const {
@@ -194,8 +220,7 @@ class StrokeCutter {
 
   /// A compact part: of all beads along its line about the largest. Its ends run into corners, and
   /// with them the bead would be no wider than those.
-  [[nodiscard]] MiddleLine largest_bead(const MiddleLine& whole) const {
-    MiddleLine line = resampled(whole);
+  [[nodiscard]] MiddleLine largest_bead(MiddleLine line) const {
     const auto widest = std::max_element(line.radii_mm.begin(), line.radii_mm.end());
     const auto peak = static_cast<std::size_t>(widest - line.radii_mm.begin());
     const std::size_t back = largest_to(line, peak, line.points.size() - 1);
@@ -288,7 +313,9 @@ std::vector<Stroke> centre_lines(const Polygons& thin, const CentreLineRule& rul
     const EdgeGrid edges({polygon});
     StrokeCutter cutter(rule, edges, origin, strokes);
     const std::size_t before = strokes.size();
-    for (const MiddleLine& line : middle_lines(polygon, edges, rule.max_width_mm)) cutter.cut(line);
+    if (!cutter.cut_compact(polygon))
+      for (const MiddleLine& line : middle_lines(polygon, edges, rule.max_width_mm))
+        cutter.cut(line);
     if (strokes.size() == before) cutter.dot(polygon);
   }
   return strokes;

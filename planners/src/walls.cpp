@@ -67,8 +67,8 @@ Polygons wall_gaps(const Polygons& polygons, const std::vector<Polygons>& region
     // Where nothing is narrow, the wall's place grows back to where it came from.
     const double step_mm = wall == 0 ? reach_of(0) : context.spacing_mm;
     if (area_mm2(before) - grown_area_mm2(region, step_mm) < least_mm2) continue;
-    gap_mm2 += add(wall == 0 ? before : offset(before, -reach_of(wall), Join::kSquare));
-    gap_mm2 -= add(offset(region, reach_of(wall), Join::kSquare));
+    gap_mm2 += add(wall == 0 ? before : offset(before, -reach_of(wall)));
+    gap_mm2 -= add(offset(region, reach_of(wall)));
   }
   if (gap_mm2 < least_mm2) return {};
   return polygons_from_rings(std::move(rings), FillRule::kEvenOdd);

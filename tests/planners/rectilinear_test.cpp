@@ -199,6 +199,23 @@ TEST(Rectilinear, DenseLayersAreCovered) {
     }
 }
 
+TEST(Rectilinear, NarrowSectionsAreCoveredWhateverTheirWidthAndDirection) {
+  // Slanted struts cut level: ellipses, from those with room for one wall alone to those that walls
+  // and lines fill.
+  for (const double lines : {1.5, 2.0, 3.0, 4.0, 5.0, 6.5})
+    for (const double slant : {1.5, 3.0})
+      for (const double angle : {0.0, 0.4, 0.9, 1.5}) {
+        Ring ellipse = test::circle({0, 0}, lines * kWidth / 2, 60);
+        const Point2 along{std::cos(angle), std::sin(angle)};
+        for (Point2& p : ellipse)
+          p = snap(Point2{20, 20} + (slant * p.x) * along + p.y * Point2{-along.y, along.x});
+        const Polygons outline{{ellipse, {}}};
+        const Route route = dense_layer(outline, {});
+        EXPECT_GE(test::share_under_beads(outline, route, 0.02), 0.9)
+            << lines << " lines wide, " << slant << " times as long, at " << angle;
+      }
+}
+
 TEST(Rectilinear, AsDeKeyserPublishedIt) {
   // Both directions at half the density, hence 3.5 mm apart; ends pulled in by 3 x 0.2 mm.
   Layer layer = layer_of({{test::rectangle(1, 1, 11, 11), {}}});

@@ -28,9 +28,7 @@ enum class FillRule { kNonZero, kEvenOdd, kPositive };
 /// canonical: it does not depend on the order of the rings or on where each begins.
 [[nodiscard]] Polygons polygons_from_rings(std::vector<Ring> rings, FillRule rule);
 
-/// How corners grow: pointed (up to twice the distance), round, or cut off at the distance, which
-/// is nearly round with fewer points.
-enum class Join { kMiter, kRound, kSquare };
+enum class Join { kMiter, kRound };
 
 /// Grows (distance > 0) or shrinks (distance < 0) polygons by |distance_mm|. The result is cleaned
 /// of points nearer than 5 um to their neighbours' line: without that, repeated offsets lose area.

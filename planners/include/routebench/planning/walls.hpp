@@ -22,8 +22,7 @@ namespace routebench {
 /// between walls in which no further one fits. What lies inside the last of them is none of it.
 ///
 /// Takes   polygons and their wall_regions, fewer than `count` if no more fit.
-/// Returns polygons, with slivers of a few micrometres among them, and what round beads leave in
-/// sharp corners.
+/// Returns polygons, with slivers of a few micrometres among them.
 /// Cost    linear where nothing is narrow; else two offsets a wall and one Boolean operation.
 [[nodiscard]] Polygons wall_gaps(const Polygons& polygons, const std::vector<Polygons>& regions,
                                  int count, const PlanContext& context);
