@@ -86,7 +86,14 @@ class StrokeCutter {
                std::vector<Stroke>& strokes)
       : rule_(rule), edges_(edges), origin_(origin), strokes_(strokes) {}
 
-  void cut(const MiddleLine& line) { cut_where_wide(line); }
+  void cut(const MiddleLine& line) {
+    std::size_t begin = 0;
+    for (std::size_t i = 0; i <= line.points.size(); ++i) {
+      if (i < line.points.size() && 2 * line.radii_mm[i] >= rule_.min_width_mm) continue;
+      if (i > begin) cut_by_width(line, begin, i - 1);
+      begin = i + 1;
+    }
+  }
 
   /// Lays the largest bead on the long axis of a compact part; false if it is none.
   bool cut_compact(const Polygon& polygon) {
@@ -112,7 +119,10 @@ class StrokeCutter {
     }
     if (line.points.size() < 2) return false;
     const std::size_t before = strokes_.size();
-    cut_where_wide(largest_bead(line));
+    const auto [first, last] = largest_bead(line);
+    line.points = {line.points[first], line.points[last]};
+    line.radii_mm = {line.radii_mm[first], line.radii_mm[last]};
+    cut(line);
     return strokes_.size() > before;
   }
 
@@ -140,15 +150,6 @@ class StrokeCutter {
   }
 
  private:
-  void cut_where_wide(const MiddleLine& line) {
-    std::size_t begin = 0;
-    for (std::size_t i = 0; i <= line.points.size(); ++i) {
-      if (i < line.points.size() && 2 * line.radii_mm[i] >= rule_.min_width_mm) continue;
-      if (i > begin) cut_by_width(line, begin, i - 1);
-      begin = i + 1;
-    }
-  }
-
   [[nodiscard]] double width_at(const MiddleLine& line, std::size_t i) const {
     return std::min(2 * line.radii_mm[i], rule_.max_width_mm);
   }
@@ -200,39 +201,23 @@ class StrokeCutter {
     if (stroke.points.size() >= 2) strokes_.push_back(std::move(stroke));
   }
 
-  /// Where a bead that begins at one point is largest if it ends there, on the way to another.
-  [[nodiscard]] std::size_t largest_to(const MiddleLine& line, std::size_t from,
-                                       std::size_t to) const {
-    double width = width_at(line, from), length = 0, largest = 0;
-    std::size_t best = from;
-    for (std::size_t i = from; i != to;) {
-      const std::size_t next = to > from ? i + 1 : i - 1;
-      length += distance(line.points[i], line.points[next]);
-      width = std::min(width, width_at(line, next));
-      i = next;
-      const double area = width * (length + std::numbers::pi / 4 * width);
-      if (area < largest) continue;
-      largest = area;
-      best = i;
+  /// The stretch of a line under the largest bead that runs along it. The ends of a compact part
+  /// run into corners, and with them the bead would be no wider than those.
+  [[nodiscard]] std::pair<std::size_t, std::size_t> largest_bead(const MiddleLine& line) const {
+    std::pair<std::size_t, std::size_t> best{0, 0};
+    double largest = 0;
+    for (std::size_t first = 0; first < line.points.size(); ++first) {
+      double width = width_at(line, first), length = 0;
+      for (std::size_t last = first + 1; last < line.points.size(); ++last) {
+        length += distance(line.points[last - 1], line.points[last]);
+        width = std::min(width, width_at(line, last));
+        const double area = width * (length + std::numbers::pi / 4 * width);
+        if (area <= largest) continue;
+        largest = area;
+        best = {first, last};
+      }
     }
     return best;
-  }
-
-  /// A compact part: of all beads along its line about the largest. Its ends run into corners, and
-  /// with them the bead would be no wider than those.
-  [[nodiscard]] MiddleLine largest_bead(MiddleLine line) const {
-    const auto widest = std::max_element(line.radii_mm.begin(), line.radii_mm.end());
-    const auto peak = static_cast<std::size_t>(widest - line.radii_mm.begin());
-    const std::size_t back = largest_to(line, peak, line.points.size() - 1);
-    const std::size_t front = largest_to(line, back, 0);
-    if (back - front < 1) return line;
-    const auto cut = [&](auto& values) {
-      values.resize(back + 1);
-      values.erase(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(front));
-    };
-    cut(line.points);
-    cut(line.radii_mm);
-    return line;
   }
 
   [[nodiscard]] double width_of(const std::vector<Point2>& points) const {
@@ -306,6 +291,7 @@ std::vector<Stroke> centre_lines(const Polygons& thin, const CentreLineRule& rul
     own.outer = moved(polygon.outer, Point2{} - origin);
     for (const Ring& hole : polygon.holes) own.holes.push_back(moved(hole, Point2{} - origin));
   }
+  const EdgeGrid all_edges(near_origin);
   for (const Polygon& polygon : without_thin_parts(near_origin, rule.min_width_mm)) {
     stop_if_asked(context);
     const Box2 box = bounding_box({polygon});
@@ -313,7 +299,8 @@ std::vector<Stroke> centre_lines(const Polygons& thin, const CentreLineRule& rul
     const EdgeGrid edges({polygon});
     StrokeCutter cutter(rule, edges, origin, strokes);
     const std::size_t before = strokes.size();
-    if (!cutter.cut_compact(polygon))
+    // Beads of compact parts are as large as the polygons let them be, not their smoothed copies.
+    if (!StrokeCutter(rule, all_edges, origin, strokes).cut_compact(polygon))
       for (const MiddleLine& line : middle_lines(polygon, edges, rule.max_width_mm))
         cutter.cut(line);
     if (strokes.size() == before) cutter.dot(polygon);
