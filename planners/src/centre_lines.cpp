@@ -10,6 +10,7 @@
 #include "routebench/geometry/edge_grid.hpp"
 #include "routebench/geometry/grid.hpp"
 #include "routebench/geometry/region.hpp"
+#include "routebench/geometry/simplify.hpp"
 #include "routebench/geometry/vec.hpp"
 #include "routebench/planning/ring_path.hpp"
 
@@ -47,36 +48,6 @@ void axis_of(const Ring& ring, Point2& centre, Point2& along) {
   yy -= area * middle.y * middle.y;
   const double angle = std::atan2(2 * xy, xx - yy) / 2;
   along = {std::cos(angle), std::sin(angle)};
-}
-
-/// Marks the points that a polyline needs to stay within kStraightMm.
-void mark_needed(const std::vector<Point2>& points, std::vector<bool>& needed) {
-  std::vector<std::pair<std::size_t, std::size_t>> stretches{{0, points.size() - 1}};
-  while (!stretches.empty()) {
-    const auto [from, to] = stretches.back();
-    stretches.pop_back();
-    needed[from] = needed[to] = true;
-    double farthest = kStraightMm * kStraightMm;
-    std::size_t at = from;
-    for (std::size_t i = from + 1; i < to; ++i) {
-      const Point2 foot = nearest_on_segment(points[i], points[from], points[to]);
-      if (squared_distance(points[i], foot) <= farthest) continue;
-      farthest = squared_distance(points[i], foot);
-      at = i;
-    }
-    if (at == from) continue;
-    stretches.emplace_back(from, at);
-    stretches.emplace_back(at, to);
-  }
-}
-
-std::vector<Point2> straightened(const std::vector<Point2>& points) {
-  std::vector<bool> needed(points.size(), false);
-  mark_needed(points, needed);
-  std::vector<Point2> kept;
-  for (std::size_t i = 0; i < points.size(); ++i)
-    if (needed[i]) kept.push_back(points[i]);
-  return kept;
 }
 
 /// Makes strokes of the middle lines of one polygon.
@@ -184,7 +155,7 @@ class StrokeCutter {
   void lay(const MiddleLine& line, std::size_t first, std::size_t last) {
     std::vector<Point2> points(line.points.begin() + static_cast<std::ptrdiff_t>(first),
                                line.points.begin() + static_cast<std::ptrdiff_t>(last) + 1);
-    points = straightened(points);
+    points = simplified(points, kStraightMm);
     Stroke stroke;
     stroke.width_mm = width_of(points);
     if (points.size() >= 2) {
