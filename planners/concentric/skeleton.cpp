@@ -65,7 +65,7 @@ std::vector<Polygons> insets_of(const Polygon& polygon, double step_mm,
 
 std::vector<Polygons> skeleton_insets(const Polygons& polygons, double first_mm, double step_mm,
                                       const PlanContext& context) {
-  // An offset rids the outline of the points that do not matter, which are most of a curve's.
+  // An offset rids the outline of the points that do not matter, which may be most of a curve's.
   const Polygons outermost = offset(polygons, -first_mm);
   if (outermost.empty()) return {};
   std::vector<Polygons> all{outermost};
