@@ -23,7 +23,7 @@ enum class Method {
                                            const PlanContext& context);
 
 /// Above so many points of a polygon no skeleton is built. The time grows with the power 1.8 of
-/// them, and CGAL cannot be stopped: these take it about two seconds.
+/// them, and CGAL cannot be stopped: these take it some tenths of a second.
 inline constexpr std::size_t kMostSkeletonPoints = 500;
 
 /// The same, all but the first inset from straight skeletons of the polygons of that. Where one
