@@ -44,7 +44,8 @@ struct ConcentricParams {
          "published: loops and nothing else, that is link none, order outside_in, thin drop, "
          "whatever else is given for these");
     bind("method", method, {{"clipper", Method::kClipper}, {"skeleton", Method::kSkeleton}},
-         "how loops are found: each from the one before, or all from a straight skeleton");
+         "how loops are found: each from the one before, or all from a straight skeleton of the "
+         "first");
     bind("order", order, {{"inside_out", Order::kInsideOut}, {"outside_in", Order::kOutsideIn}},
          "of the loops of a branch; a branch is finished before the next");
     bind("link", link, {{"none", Link::kNone}, {"tree", Link::kTree}, {"spiral", Link::kSpiral}},

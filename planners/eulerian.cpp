@@ -110,7 +110,8 @@ class Eulerian final : public Planner {
           lay(over_grid(region, context));
       }
       if (params_.thin == Thin::kFill && context.density >= 1)
-        for (Stroke& stroke : gap_lines(frame.polygons(), {regions}, 1, context))
+        for (Stroke& stroke :
+             gap_lines(frame.polygons(), {regions}, 1, context.line_width_mm, context))
           strokes.push_back(std::move(stroke));
     }
     return frame.from_frame(

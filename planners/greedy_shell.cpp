@@ -336,7 +336,8 @@ class GreedyShell final : public Planner {
     }
     if (params_.order == Order::kInsideOut) std::reverse(island.pools.begin(), island.pools.end());
     if (params_.gaps == Gaps::kFill)
-      island.gaps = gap_lines({polygon}, regions, context.perimeters, context);
+      island.gaps =
+          gap_lines({polygon}, regions, context.perimeters, context.line_width_mm, context);
     return island;
   }
 

@@ -23,9 +23,15 @@ enum class Sequence { kNearest, kZigzag };
 enum class Thin { kFill, kDrop };
 enum class Published { kNone, kDeKeyser, kSimpleSlicer };
 
+constexpr double kLeastStripMm2 = 0.05;  // less is noise of offsets
 // Nearer to a line than this share of the spacing the boundary counts as laid: half the spacing is
 // how far a line has to reach anyway.
 constexpr double kReach = 0.6;
+// In regions that are narrower than so many lines, the rim is much of the whole: there traces come
+// nearer to lines and may be half as short. In wider ones that costs travels and covers nothing to
+// speak of.
+constexpr double kNarrowLines = 4;
+constexpr double kReachInNarrow = 0.45;
 
 struct RectilinearParams {
   Published published = Published::kNone;
@@ -70,9 +76,10 @@ struct RectilinearParams {
     bind("max_link", max_link, {0, 100}, "line distances", "longest joint along the wall");
     bind("min_length_mm", min_length_mm, {0, 100}, "mm", "shorter lines are left out");
     bind("trace", trace, "at density 1: lay the stretches along the wall that no line comes near");
-    bind("thin", thin, {{"fill", Thin::kFill}, {"drop", Thin::kDrop}},
-         "at density 1, parts narrower than a line: one of their own width along the middle, or "
-         "nothing");
+    bind(
+        "thin", thin, {{"fill", Thin::kFill}, {"drop", Thin::kDrop}},
+        "at density 1, parts too narrow for two lines: one of their own width along the middle; or "
+        "lines as elsewhere, and nothing where none fits");
     bind("order", order, {{"nearest", Sequence::kNearest}, {"zigzag", Sequence::kZigzag}},
          "of the strokes: always the nearest, or line by line, every other one reversed");
   }
@@ -132,9 +139,12 @@ class Rectilinear final : public Planner {
     const Frame frame(layer, context);
     const Rules rules = rules_of(params_, layer, context);
     const RectilinearParams& params = rules.params;
-    const Polygons regions = params.ends == Ends::kInset
-                                 ? offset(frame.polygons(), -context.line_width_mm / 2)
-                                 : frame.polygons();
+    const bool fills_thin =
+        params.thin == Thin::kFill && params.ends == Ends::kInset && context.density >= 1;
+    Polygons regions = params.ends == Ends::kInset
+                           ? offset(frame.polygons(), -context.line_width_mm / 2)
+                           : frame.polygons();
+    if (fills_thin) regions = without_strips(std::move(regions), context);
     const double angle_deg = params.angle_deg + (params.alternate && layer.index % 2 != 0 ? 90 : 0);
     const bool both = params.grid && context.density < 1;
     std::vector<Stroke> strokes;
@@ -142,8 +152,9 @@ class Rectilinear final : public Planner {
       fill(region, rules, angle_deg, both ? 2 : 1, context, strokes);
       if (both) fill(region, rules, angle_deg + 90, 2, context, strokes);
     }
-    if (params.thin == Thin::kFill && params.ends == Ends::kInset && context.density >= 1)
-      for (Stroke& stroke : gap_lines(frame.polygons(), {regions}, 1, context))
+    if (fills_thin)
+      for (Stroke& stroke : gap_lines(frame.polygons(), {regions}, 1,
+                                      context.line_width_mm + context.spacing_mm, context))
         strokes.push_back(std::move(stroke));
     return frame.from_frame({params.order == Sequence::kZigzag
                                  ? to_and_fro(std::move(strokes))
@@ -151,6 +162,25 @@ class Rectilinear final : public Planner {
   }
 
  private:
+  /// The regions without what is too narrow for two lines side by side: one line of its own width
+  /// serves it better than a row of dots.
+  static Polygons without_strips(Polygons regions, const PlanContext& context) {
+    const double half_mm = context.spacing_mm / 2;
+    const Polygons cores = offset(regions, -half_mm);
+    if (area_mm2(regions) - grown_area_mm2(cores, half_mm) < kLeastStripMm2) return regions;
+    return intersect(offset(cores, half_mm), regions);
+  }
+
+  static std::vector<std::vector<Point2>> traces(const Hatch& hatch,
+                                                 const std::vector<Joint>& joints,
+                                                 const Polygon& region,
+                                                 const PlanContext& context) {
+    const double mean_width_mm = 2 * area_mm2(region) / perimeter_mm(Polygons{region});
+    const bool is_narrow = mean_width_mm < kNarrowLines * context.line_width_mm;
+    return bare_boundary(hatch, joints, (is_narrow ? kReachInNarrow : kReach) * context.spacing_mm,
+                         (is_narrow ? 0.5 : 1) * context.line_width_mm, context);
+  }
+
   /// Lays one direction in one region, its lines `sparser` times farther apart than demanded.
   static void fill(const Polygon& region, const Rules& rules, double angle_deg, int sparser,
                    const PlanContext& context, std::vector<Stroke>& strokes) {
@@ -173,8 +203,7 @@ class Rectilinear final : public Planner {
     };
     lay(joined_lines(hatch, joints));
     if (params.trace && params.ends == Ends::kInset && context.density >= 1)
-      lay(bare_boundary(hatch, joints, kReach * context.spacing_mm, context.line_width_mm,
-                        context));
+      lay(traces(hatch, joints, region, context));
   }
 
   static std::vector<Joint> joints_of(const Hatch& hatch, const Polygon& region, const Rules& rules,

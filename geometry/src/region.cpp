@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "clipper_paths.hpp"
+#include "routebench/geometry/simplify.hpp"
 #include "routebench/geometry/vec.hpp"
 
 namespace routebench {
@@ -162,6 +163,19 @@ Polygons polygons_from_rings(std::vector<Ring> rings, FillRule rule) {
   return from_clipper(tree);
 }
 
+namespace {
+
+/// A ring without the points that are noise. Clipper's own CleanPolygons looks at three points at a
+/// time, so along a curve of many points its errors add up: a circle of thousands becomes a
+/// pentagon.
+cl::Path cleaned(const cl::Path& path) {
+  Ring ring;
+  for (const cl::IntPoint& p : path) ring.push_back(from_clipper(p));
+  return to_clipper(simplified_ring(std::move(ring), kCleanMm));
+}
+
+}  // namespace
+
 Polygons offset(const Polygons& polygons, double distance_mm, Join join) {
   if (distance_mm == 0 || polygons.empty()) return polygons;
   cl::ClipperOffset offsetter(kMiterLimit, kArcToleranceMm * kGridUnitsPerMm);
@@ -169,8 +183,8 @@ Polygons offset(const Polygons& polygons, double distance_mm, Join join) {
                      cl::etClosedPolygon);
   cl::Paths paths;
   offsetter.Execute(paths, distance_mm * kGridUnitsPerMm);
-  cl::CleanPolygons(paths, kCleanMm * kGridUnitsPerMm);
-  // Cleaning moves points, so rings may overlap by as much: the union makes polygons of them again.
+  for (cl::Path& path : paths) path = cleaned(path);
+  // Cleaning moves sides, so rings may overlap by as much: the union makes polygons of them again.
   cl::Clipper clipper;
   clipper.AddPaths(paths, cl::ptSubject, true);
   cl::PolyTree tree;

@@ -1,6 +1,7 @@
 #pragma once
 /// Regions at growing distances from the boundary.
 
+#include <cstddef>
 #include <vector>
 
 #include "routebench/geometry/types.hpp"
@@ -11,7 +12,7 @@ namespace routebench::concentric {
 /// How insets are computed.
 enum class Method {
   kClipper,  ///< one after the other, by an integer polygon clipper
-  kSkeleton  ///< all from one straight skeleton of the region
+  kSkeleton  ///< all further ones from a straight skeleton of the first
 };
 
 /// What lies at least first_mm, first_mm + step_mm, ... from the boundary (with mitred corners),
@@ -21,7 +22,12 @@ enum class Method {
                                            double step_mm, Method method,
                                            const PlanContext& context);
 
-/// The same from straight skeletons; where one cannot be built, the clipper's.
+/// Above so many points of a polygon no skeleton is built. The time grows with the power 1.8 of
+/// them, and CGAL cannot be stopped: these take it some tenths of a second.
+inline constexpr std::size_t kMostSkeletonPoints = 500;
+
+/// The same, all but the first inset from straight skeletons of the polygons of that. Where one
+/// cannot be built, or would take too long, the clipper's.
 [[nodiscard]] std::vector<Polygons> skeleton_insets(const Polygons& polygons, double first_mm,
                                                     double step_mm, const PlanContext& context);
 

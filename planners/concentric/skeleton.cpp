@@ -28,8 +28,14 @@ CgalRing to_cgal(const Ring& ring) {
   return out;
 }
 
+std::size_t points_of(const Polygon& polygon) {
+  std::size_t points = polygon.outer.size();
+  for (const Ring& hole : polygon.holes) points += hole.size();
+  return points;
+}
+
 /// The insets of one polygon; nothing if CGAL fails, as it may where the construction is inexact.
-std::vector<Polygons> insets_of(const Polygon& polygon, double first_mm, double step_mm,
+std::vector<Polygons> insets_of(const Polygon& polygon, double step_mm,
                                 const PlanContext& context) {
   const CgalRing outer = to_cgal(polygon.outer);
   std::vector<CgalRing> holes;
@@ -42,7 +48,7 @@ std::vector<Polygons> insets_of(const Polygon& polygon, double first_mm, double 
   const auto skeleton = CGAL::create_interior_straight_skeleton_2(
       outer.vertices_begin(), outer.vertices_end(), holes.begin(), holes.end(), Kernel());
   if (!skeleton) return all;
-  for (double inset_mm = first_mm;; inset_mm += step_mm) {
+  for (double inset_mm = step_mm;; inset_mm += step_mm) {
     stop_if_asked(context);
     std::vector<Ring> rings;
     for (const auto& found :
@@ -59,20 +65,24 @@ std::vector<Polygons> insets_of(const Polygon& polygon, double first_mm, double 
 
 std::vector<Polygons> skeleton_insets(const Polygons& polygons, double first_mm, double step_mm,
                                       const PlanContext& context) {
-  std::vector<Polygons> all;
-  for (const Polygon& polygon : polygons) {
+  // An offset rids the outline of the points that do not matter, which may be most of a curve's.
+  const Polygons outermost = offset(polygons, -first_mm);
+  if (outermost.empty()) return {};
+  std::vector<Polygons> all{outermost};
+  for (const Polygon& polygon : outermost) {
+    stop_if_asked(context);
     std::vector<Polygons> own;
     try {
-      own = insets_of(polygon, first_mm, step_mm, context);
+      if (points_of(polygon) <= kMostSkeletonPoints) own = insets_of(polygon, step_mm, context);
     } catch (const Error&) {
       throw;
     } catch (const std::exception&) {
       own.clear();
     }
-    if (own.empty()) own = insets({polygon}, first_mm, step_mm, Method::kClipper, context);
-    if (all.size() < own.size()) all.resize(own.size());
+    if (own.empty()) own = insets({polygon}, step_mm, step_mm, Method::kClipper, context);
+    if (all.size() <= own.size()) all.resize(own.size() + 1);
     for (std::size_t i = 0; i < own.size(); ++i)
-      all[i].insert(all[i].end(), own[i].begin(), own[i].end());
+      all[i + 1].insert(all[i + 1].end(), own[i].begin(), own[i].end());
   }
   return all;
 }

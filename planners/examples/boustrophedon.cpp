@@ -220,7 +220,7 @@ class Boustrophedon final : public Planner {
     for (const Field& field : fields)
       lay(bare_boundary(field.hatch, field.joints, kReach * context.spacing_mm,
                         context.line_width_mm, context));
-    for (Stroke& stroke : gap_lines(frame.polygons(), {regions}, 1, context))
+    for (Stroke& stroke : gap_lines(frame.polygons(), {regions}, 1, context.line_width_mm, context))
       strokes.push_back(std::move(stroke));
     return frame.from_frame({in_short_order(std::move(strokes), frame.start(), context)});
   }

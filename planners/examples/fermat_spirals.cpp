@@ -275,8 +275,8 @@ class FermatSpirals final : public Planner {
         for (std::vector<Point2>& line : spirals.strokes_from(loop, frame.start()))
           strokes.push_back({std::move(line), context.line_width_mm});
     if (fill_thin)
-      for (Stroke& stroke :
-           gap_lines(frame.polygons(), insets, static_cast<int>(insets.size()) + 1, context))
+      for (Stroke& stroke : gap_lines(frame.polygons(), insets, static_cast<int>(insets.size()) + 1,
+                                      context.line_width_mm, context))
         if (length_mm(stroke.points) >= params_.min_line * context.line_width_mm)
           strokes.push_back(std::move(stroke));
     return frame.from_frame({in_short_order(std::move(strokes), frame.start(), context)});

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "chordal_axis.hpp"
@@ -9,6 +10,7 @@
 #include "routebench/geometry/edge_grid.hpp"
 #include "routebench/geometry/grid.hpp"
 #include "routebench/geometry/region.hpp"
+#include "routebench/geometry/simplify.hpp"
 #include "routebench/geometry/vec.hpp"
 #include "routebench/planning/ring_path.hpp"
 
@@ -17,39 +19,35 @@ namespace {
 
 constexpr double kWidthRatio = 1.25;  // of the places that one stroke takes
 constexpr double kStraightMm = 0.004;
+// A part is compact if it is at most so many of the greatest widths long.
+constexpr double kCompact = 2;
+constexpr int kAxisSteps = 12;  // either way from its centre
 constexpr int kHalvings = 8;
 // A dot is so much narrower than its place, so that it has a length.
 constexpr double kDotShare = 0.8;
 constexpr double kDotSamples = 8;
 
-/// Marks the points that a polyline needs to stay within kStraightMm.
-void mark_needed(const std::vector<Point2>& points, std::vector<bool>& needed) {
-  std::vector<std::pair<std::size_t, std::size_t>> stretches{{0, points.size() - 1}};
-  while (!stretches.empty()) {
-    const auto [from, to] = stretches.back();
-    stretches.pop_back();
-    needed[from] = needed[to] = true;
-    double farthest = kStraightMm * kStraightMm;
-    std::size_t at = from;
-    for (std::size_t i = from + 1; i < to; ++i) {
-      const Point2 foot = nearest_on_segment(points[i], points[from], points[to]);
-      if (squared_distance(points[i], foot) <= farthest) continue;
-      farthest = squared_distance(points[i], foot);
-      at = i;
-    }
-    if (at == from) continue;
-    stretches.emplace_back(from, at);
-    stretches.emplace_back(at, to);
+/// The centre of a ring's area and the direction in which it is longest.
+void axis_of(const Ring& ring, Point2& centre, Point2& along) {
+  const Point2 base = ring.front();
+  double area = 0, xx = 0, xy = 0, yy = 0;
+  Point2 sum;
+  for (std::size_t i = 1; i + 1 < ring.size(); ++i) {
+    const Point2 a = ring[i] - base, b = ring[i + 1] - base, c = a + b;
+    const double part = cross(a, b);
+    area += part;
+    sum = sum + part / 3 * c;
+    xx += part * (a.x * a.x + b.x * b.x + c.x * c.x) / 12;
+    xy += part * (a.x * a.y + b.x * b.y + c.x * c.y) / 12;
+    yy += part * (a.y * a.y + b.y * b.y + c.y * c.y) / 12;
   }
-}
-
-std::vector<Point2> straightened(const std::vector<Point2>& points) {
-  std::vector<bool> needed(points.size(), false);
-  mark_needed(points, needed);
-  std::vector<Point2> kept;
-  for (std::size_t i = 0; i < points.size(); ++i)
-    if (needed[i]) kept.push_back(points[i]);
-  return kept;
+  const Point2 middle = (1 / area) * sum;
+  centre = base + middle;
+  xx -= area * middle.x * middle.x;
+  xy -= area * middle.x * middle.y;
+  yy -= area * middle.y * middle.y;
+  const double angle = std::atan2(2 * xy, xx - yy) / 2;
+  along = {std::cos(angle), std::sin(angle)};
 }
 
 /// Makes strokes of the middle lines of one polygon.
@@ -66,6 +64,37 @@ class StrokeCutter {
       if (i > begin) cut_by_width(line, begin, i - 1);
       begin = i + 1;
     }
+  }
+
+  /// Lays the largest bead on the long axis of a compact part; false if it is none.
+  bool cut_compact(const Polygon& polygon) {
+    if (rule_.width != CentreLineWidth::kInscribed || !polygon.holes.empty()) return false;
+    const Box2 box = bounding_box({polygon});
+    const double extent_mm = distance(box.lower, box.upper);
+    if (extent_mm > kCompact * rule_.max_width_mm) return false;
+    Point2 centre, along;
+    axis_of(polygon.outer, centre, along);
+    if (!edges_.contains(centre)) return false;
+    MiddleLine line;
+    line.free_front = line.free_back = true;
+    for (int i = -kAxisSteps; i <= kAxisSteps; ++i) {
+      const Point2 p = centre + (extent_mm / 2 * i / kAxisSteps) * along;
+      if (!edges_.contains(p)) {
+        if (i > 0) break;
+        line.points.clear();
+        line.radii_mm.clear();
+        continue;
+      }
+      line.points.push_back(p);
+      line.radii_mm.push_back(width_at(p) / 2);
+    }
+    if (line.points.size() < 2) return false;
+    const std::size_t before = strokes_.size();
+    const auto [first, last] = largest_bead(line);
+    line.points = {line.points[first], line.points[last]};
+    line.radii_mm = {line.radii_mm[first], line.radii_mm[last]};
+    cut(line);
+    return strokes_.size() > before;
   }
 
   /// Lays a dot at the place that is farthest from the boundary, if that is wide enough.
@@ -126,7 +155,7 @@ class StrokeCutter {
   void lay(const MiddleLine& line, std::size_t first, std::size_t last) {
     std::vector<Point2> points(line.points.begin() + static_cast<std::ptrdiff_t>(first),
                                line.points.begin() + static_cast<std::ptrdiff_t>(last) + 1);
-    points = straightened(points);
+    points = simplified(points, kStraightMm);
     Stroke stroke;
     stroke.width_mm = width_of(points);
     if (points.size() >= 2) {
@@ -141,6 +170,25 @@ class StrokeCutter {
       if (const Point2 q = snap(p) + origin_; stroke.points.empty() || stroke.points.back() != q)
         stroke.points.push_back(q);
     if (stroke.points.size() >= 2) strokes_.push_back(std::move(stroke));
+  }
+
+  /// The stretch of a line under the largest bead that runs along it. The ends of a compact part
+  /// run into corners, and with them the bead would be no wider than those.
+  [[nodiscard]] std::pair<std::size_t, std::size_t> largest_bead(const MiddleLine& line) const {
+    std::pair<std::size_t, std::size_t> best{0, 0};
+    double largest = 0;
+    for (std::size_t first = 0; first < line.points.size(); ++first) {
+      double width = width_at(line, first), length = 0;
+      for (std::size_t last = first + 1; last < line.points.size(); ++last) {
+        length += distance(line.points[last - 1], line.points[last]);
+        width = std::min(width, width_at(line, last));
+        const double area = width * (length + std::numbers::pi / 4 * width);
+        if (area <= largest) continue;
+        largest = area;
+        best = {first, last};
+      }
+    }
+    return best;
   }
 
   [[nodiscard]] double width_of(const std::vector<Point2>& points) const {
@@ -214,6 +262,7 @@ std::vector<Stroke> centre_lines(const Polygons& thin, const CentreLineRule& rul
     own.outer = moved(polygon.outer, Point2{} - origin);
     for (const Ring& hole : polygon.holes) own.holes.push_back(moved(hole, Point2{} - origin));
   }
+  const EdgeGrid all_edges(near_origin);
   for (const Polygon& polygon : without_thin_parts(near_origin, rule.min_width_mm)) {
     stop_if_asked(context);
     const Box2 box = bounding_box({polygon});
@@ -221,7 +270,10 @@ std::vector<Stroke> centre_lines(const Polygons& thin, const CentreLineRule& rul
     const EdgeGrid edges({polygon});
     StrokeCutter cutter(rule, edges, origin, strokes);
     const std::size_t before = strokes.size();
-    for (const MiddleLine& line : middle_lines(polygon, edges, rule.max_width_mm)) cutter.cut(line);
+    // Beads of compact parts are as large as the polygons let them be, not their smoothed copies.
+    if (!StrokeCutter(rule, all_edges, origin, strokes).cut_compact(polygon))
+      for (const MiddleLine& line : middle_lines(polygon, edges, rule.max_width_mm))
+        cutter.cut(line);
     if (strokes.size() == before) cutter.dot(polygon);
   }
   return strokes;

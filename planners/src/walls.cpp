@@ -75,11 +75,11 @@ Polygons wall_gaps(const Polygons& polygons, const std::vector<Polygons>& region
 }
 
 std::vector<Stroke> gap_lines(const Polygons& polygons, const std::vector<Polygons>& regions,
-                              int count, const PlanContext& context) {
+                              int count, double widest_mm, const PlanContext& context) {
   const double narrowest_mm = context.line_width_mm / 3;  // less is left to what beads spread
   return centre_lines(wall_gaps(polygons, regions, count, context),
                       {.min_width_mm = narrowest_mm,
-                       .max_width_mm = context.line_width_mm,
+                       .max_width_mm = widest_mm,
                        .min_length_mm = context.line_width_mm / 2,
                        .width = CentreLineWidth::kInscribed},
                       context);

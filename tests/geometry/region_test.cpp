@@ -3,8 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <random>
 
+#include "polygons.hpp"
 #include "random_polygons.hpp"
 #include "routebench/geometry/vec.hpp"
 
@@ -119,6 +122,22 @@ TEST(Region, OffsetIsMonotoneAndKeepsItsDistance) {
             EXPECT_GE(distance(p, q), 0.5 - 0.006);
           }
   }
+}
+
+TEST(Region, OffsetsOfFineCurvesAreAsRoundAsOthers) {
+  for (const double radius : {2.0, 5.0, 15.0})
+    for (const int points : {50, 400, 1000, 4000}) {
+      const Polygons inner = offset({{test::circle({0, 0}, radius, points), {}}}, -0.25);
+      ASSERT_EQ(inner.size(), 1U);
+      // No point of a chord is farther from the circle than its middle.
+      const Ring& ring = inner[0].outer;
+      const double sagitta = radius * (1 - std::cos(std::numbers::pi / points));
+      for (std::size_t i = 0; i < ring.size(); ++i) {
+        const Point2 middle = lerp(ring[i], ring[(i + 1) % ring.size()], 0.5);
+        EXPECT_NEAR(distance(middle, {0, 0}), radius - 0.25, sagitta + 0.006)
+            << radius << " mm, " << points << " points";
+      }
+    }
 }
 
 TEST(Region, RepeatedOffsetsLoseNothing) {

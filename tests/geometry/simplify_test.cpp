@@ -1,91 +1,107 @@
-/// Models with ?simplify=.
+#include "routebench/geometry/simplify.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <string>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <random>
+#include <vector>
 
-#include "meshes.hpp"
-#include "model_files.hpp"
-#include "routebench/geometry/model.hpp"
-#include "routebench/geometry/stl.hpp"
+#include "polygons.hpp"
+#include "random_polygons.hpp"
+#include "routebench/geometry/vec.hpp"
 
 namespace routebench {
 namespace {
 
-using test::ModelFile;
-using test::refusal_of;
-
-Model loaded(const Mesh& mesh, const std::string& query) {
-  const ModelFile file("part.stl", stl_bytes(mesh));
-  return load_model(file.path() + query);
+std::vector<Point2> random_walk(std::uint64_t seed, int points) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> step(0, 0.01);
+  std::vector<Point2> walk{{0, 0}};
+  for (int i = 1; i < points; ++i) walk.push_back(walk.back() + Point2{step(random), step(random)});
+  return walk;
 }
 
-TEST(Simplify, LeavesTheShareThatIsAskedFor) {
-  const Mesh mesh = test::torus(20, 5, 120, 60);
-  for (const double share : {0.5, 0.1, 0.02}) {
-    const Model model = loaded(mesh, "?simplify=" + std::to_string(share));
-    ASSERT_TRUE(model.report.simplification);
-    const Simplification& done = *model.report.simplification;
-    EXPECT_EQ(done.triangles_before, mesh.triangles.size());
-    EXPECT_EQ(done.triangles_after, model.mesh.triangles.size());
-    EXPECT_NEAR(static_cast<double>(done.triangles_after),
-                share * static_cast<double>(mesh.triangles.size()), 4);
-    EXPECT_EQ(model.report.triangles, mesh.triangles.size()) << "the report tells of the file";
+/// How far points are from the nearest place of a line.
+double farthest_mm(const std::vector<Point2>& points, const std::vector<Point2>& line) {
+  double farthest = 0;
+  for (const Point2 p : points) {
+    double nearest = distance(p, line.front());
+    for (std::size_t i = 1; i < line.size(); ++i)
+      nearest = std::min(nearest, distance(p, nearest_on_segment(p, line[i - 1], line[i])));
+    farthest = std::max(farthest, nearest);
+  }
+  return farthest;
+}
+
+bool is_part_of(const std::vector<Point2>& few, const std::vector<Point2>& all) {
+  auto at = all.begin();
+  return std::all_of(few.begin(), few.end(), [&](Point2 p) {
+    at = std::find(at, all.end(), p);
+    return at != all.end();
+  });
+}
+
+TEST(Simplify, WhatIsLeftIsOfTheLineAndNearAllOfIt) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed)
+    for (const double tolerance_mm : {0.0, 0.005, 0.05}) {
+      const std::vector<Point2> all = random_walk(seed, 400);
+      const std::vector<Point2> few = simplified(all, tolerance_mm);
+      EXPECT_EQ(few.front(), all.front());
+      EXPECT_EQ(few.back(), all.back());
+      EXPECT_TRUE(is_part_of(few, all));
+      EXPECT_LE(farthest_mm(all, few), tolerance_mm + 1e-12);
+      if (tolerance_mm > 0.01) {
+        EXPECT_LT(few.size(), all.size() / 4);
+      }
+    }
+}
+
+TEST(Simplify, ShortAndStraightLines) {
+  EXPECT_TRUE(simplified({}, 1).empty());
+  const std::vector<Point2> two{{0, 0}, {1, 0}};
+  EXPECT_EQ(simplified(two, 5), two);
+  EXPECT_EQ(simplified({{0, 0}, {0.25, 0}, {0.5, 0}, {1, 0}}, 0), two);
+  // A spike back along the line is no noise.
+  const std::vector<Point2> spike{{0, 0}, {3, 0}, {1, 0}};
+  EXPECT_EQ(simplified(spike, 0.1), spike);
+}
+
+TEST(Simplify, RingsDoNotDependOnWhereTheyBegin) {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed)
+    for (const Polygon& polygon : test::random_polygons(seed)) {
+      const Ring few = simplified_ring(polygon.outer, 0.1);
+      for (std::size_t shift = 1; shift < polygon.outer.size(); shift += 7) {
+        Ring turned = polygon.outer;
+        std::rotate(turned.begin(), turned.begin() + static_cast<std::ptrdiff_t>(shift),
+                    turned.end());
+        EXPECT_EQ(simplified_ring(turned, 0.1), few);
+      }
+      Ring closed = few;
+      closed.push_back(few.front());
+      EXPECT_LE(farthest_mm(polygon.outer, closed), 0.1 + 1e-12);
+    }
+}
+
+TEST(Simplify, ACircleKeepsThePointsThatItsRoundnessNeeds) {
+  // Chords of a circle of radius r whose middles are t inside it span an angle of
+  // 2 acos(1 - t / r). Halving gives chords of half to all of that.
+  const double radius = 5, tolerance = 0.005;
+  const double most = 2 * std::numbers::pi / (2 * std::acos(1 - tolerance / radius));
+  for (const int points : {500, 4000, 20000}) {
+    const auto kept = static_cast<double>(
+        simplified_ring(test::circle({0, 0}, radius, points), tolerance).size());
+    EXPECT_GE(kept, most);
+    EXPECT_LE(kept, 2 * most + 2);
   }
 }
 
-// The volume between two surfaces is at most area times distance.
-TEST(Simplify, TheDeviationBoundsWhatIsLost) {
-  const Mesh mesh = test::torus(20, 5, 120, 60);
-  const double area_mm2 = 4 * 3.14159265 * 3.14159265 * 20 * 5;
-  double before = 0;
-  for (const double share : {0.5, 0.1, 0.02}) {
-    const Model model = loaded(mesh, "?simplify=" + std::to_string(share));
-    const double deviation_mm = model.report.simplification->deviation_mm;
-    EXPECT_GT(deviation_mm, before) << "fewer triangles, larger deviation";
-    before = deviation_mm;
-    EXPECT_LE(std::abs(test::volume_mm3(model.mesh) - test::volume_mm3(mesh)),
-              area_mm2 * deviation_mm);
-    EXPECT_LT(deviation_mm, 1);
-  }
-}
-
-// Where faces are flat there is nothing to lose.
-TEST(Simplify, FlatFacesLoseNothing) {
-  const Model fine = load_model("shape:box?size=20&triangles=3000");
-  const Model coarse = load_model("shape:box?size=20&triangles=3000&simplify=0.01");
-  ASSERT_GT(fine.mesh.triangles.size(), 2000U);
-  EXPECT_LT(coarse.mesh.triangles.size(), 60U);
-  EXPECT_NEAR(coarse.report.simplification->deviation_mm, 0, 1e-9);
-  EXPECT_NEAR(test::volume_mm3(coarse.mesh), 8000, 1e-6);
-}
-
-TEST(Simplify, ScalingScalesTheDeviation) {
-  const Mesh mesh = test::torus(20, 5, 60, 30);
-  const Model one = loaded(mesh, "?simplify=0.1&size=50");
-  const Model two = loaded(mesh, "?simplify=0.1&size=100");
-  EXPECT_NEAR(two.report.simplification->deviation_mm, 2 * one.report.simplification->deviation_mm,
-              1e-9);
-}
-
-TEST(Simplify, DoesNotDependOnTheOrderOfTriangles) {
-  const Mesh mesh = test::torus(20, 5, 60, 30);
-  const std::uint64_t hash = loaded(mesh, "?simplify=0.1").content_hash;
-  for (const std::uint32_t seed : {1U, 2U, 3U})
-    EXPECT_EQ(loaded(test::shuffled(mesh, seed), "?simplify=0.1").content_hash, hash);
-}
-
-TEST(Simplify, OneSurfaceOrNone) {
-  const Mesh touching =
-      test::together(test::box({0, 0, 0}, {10, 10, 10}), test::box({10, 10, 0}, {20, 20, 10}));
-  const ModelFile file("touching.stl", stl_bytes(touching));
-  EXPECT_NE(refusal_of(file.path() + "?simplify=0.5").find("cannot be simplified"),
-            std::string::npos);
-  for (const char* share : {"0", "1.5", "-1", "nan", "half", "0.5mm"})
-    EXPECT_NE(refusal_of(file.path() + "?simplify=" + share).find("share of triangles"),
-              std::string::npos)
-        << share;
+TEST(Simplify, ARingNarrowerThanTheToleranceLosesItsArea) {
+  EXPECT_LT(simplified_ring(test::rectangle(0, 0, 10, 0.01), 0.02).size(), 3U);
+  const Ring square = test::rectangle(0, 0, 10, 10);
+  EXPECT_EQ(simplified_ring(square, 0.02), square);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "planning.hpp"
@@ -134,6 +135,24 @@ TEST(CentreLines, ACompactPartGetsADotIfThatIsAskedFor) {
   EXPECT_LE(farthest_outside_mm(square, strokes), 1e-5);
   rule.min_dot_mm = 0.45;
   EXPECT_TRUE(lines_of(square, rule).empty());
+}
+
+TEST(CentreLines, ACompactPartGetsNearlyTheLargestBeadThatFits) {
+  // A bead from corner to corner would be no wider than it is there.
+  for (const double length : {0.36, 0.45, 0.6})
+    for (const double width : {0.25, 0.3, 0.35})
+      for (int turn = 0; turn < 6; ++turn) {
+        const double angle = 0.1 + turn * std::numbers::pi / 6;
+        for (const Polygons& part :
+             {strip(length, width, angle), test::ellipse({50, 50}, length, width, angle)}) {
+          const CentreLineRule rule = inscribed();
+          const std::vector<Stroke> strokes = lines_of(part, rule);
+          EXPECT_LE(farthest_outside_mm(part, strokes), 0.02) << length << ", " << width;
+          EXPECT_GE(test::share_under_beads(part, {strokes}, 0.005) * area_mm2(part),
+                    0.9 * test::largest_bead_mm2(part, rule.max_width_mm))
+              << length << " x " << width << " mm at " << angle;
+        }
+      }
 }
 
 TEST(CentreLines, TheyMoveWithThePolygons) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "concentric/insets.hpp"
 #include "planning.hpp"
 #include "routebench/geometry/grid.hpp"
 
@@ -109,6 +110,24 @@ TEST(Concentric, ClipperAndSkeletonAgree) {
       EXPECT_LE(area_mm2(difference), 0.01 * area_mm2(polygons)) << seed;
       EXPECT_LE(area_mm2(offset(difference, -0.03)), 0.001 * area_mm2(polygons)) << seed;
     }
+  }
+}
+
+/// A wheel with so many teeth.
+Polygons wheel(int teeth) {
+  Ring ring = test::circle({30, 30}, 30, 2 * teeth);
+  for (std::size_t i = 0; i < ring.size(); i += 2) ring[i] = snap(lerp({30, 30}, ring[i], 0.995));
+  return {{ring, {}}};
+}
+
+TEST(Concentric, PolygonsOfMorePointsThanASkeletonMayHaveAreLeftToTheClipper) {
+  // So flat are the teeth that the first inset, of which the skeleton is made, keeps their points.
+  ParamSet skeleton = kLoops;
+  skeleton["method"] = word("skeleton");
+  constexpr int kTeeth = concentric::kMostSkeletonPoints / 2;
+  for (const int teeth : {kTeeth - 25, kTeeth + 1}) {
+    const bool by_clipper = plan(wheel(teeth), 0.1, skeleton) == plan(wheel(teeth), 0.1, kLoops);
+    EXPECT_EQ(by_clipper, teeth > kTeeth) << teeth;
   }
 }
 

@@ -154,8 +154,9 @@ TEST(Eulerian, NeighboursAtADiagonalMakeALineToo) {
   const Polygons slanted{
       {{snap(Point2{0, 0}), snap(Point2{w, 0}), snap(Point2{10 + w, 10}), snap(Point2{10, 10})},
        {}}};
-  const Route route = plan(slanted, 1);
-  EXPECT_LE(route.strokes.size(), 2U);
+  // Its sharp corners are parts too thin for a loop.
+  const Route route = plan(slanted, 1, {{"thin", word("drop")}});
+  EXPECT_EQ(route.strokes.size(), 1U);
   EXPECT_GT(length_mm(route), 0.85 * 10 * std::sqrt(2));
 }
 

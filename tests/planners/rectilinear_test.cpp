@@ -199,6 +199,24 @@ TEST(Rectilinear, DenseLayersAreCovered) {
     }
 }
 
+TEST(Rectilinear, NarrowSectionsAreCoveredWhateverTheirWidthAndDirection) {
+  // Slanted struts cut level: ellipses, from those with room for one line alone to those that walls
+  // and lines fill.
+  for (const double lines : {0.75, 1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.5})
+    for (const double slant : {1.5, 3.0})
+      for (const double angle : {0.0, 0.4, 0.9, 1.5}) {
+        const double wide_mm = lines * kWidth;
+        const Polygons outline = test::ellipse({20, 20}, slant * wide_mm, wide_mm, angle);
+        const Route route = dense_layer(outline, {});
+        const double share = test::share_under_beads(outline, route, 0.02);
+        // No wider than a line there is room for one bead alone.
+        const double least =
+            lines > 1 ? 0.9 : 0.9 * test::largest_bead_mm2(outline, kWidth) / area_mm2(outline);
+        EXPECT_GE(share, least) << lines << " lines wide, " << slant << " times as long, at "
+                                << angle;
+      }
+}
+
 TEST(Rectilinear, AsDeKeyserPublishedIt) {
   // Both directions at half the density, hence 3.5 mm apart; ends pulled in by 3 x 0.2 mm.
   Layer layer = layer_of({{test::rectangle(1, 1, 11, 11), {}}});

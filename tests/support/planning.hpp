@@ -3,8 +3,11 @@
 /// routes.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
+#include <random>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -13,6 +16,7 @@
 #include "polygons.hpp"
 #include "random_polygons.hpp"
 #include "routebench/geometry/edge_grid.hpp"
+#include "routebench/geometry/grid.hpp"
 #include "routebench/geometry/region.hpp"
 #include "routebench/geometry/vec.hpp"
 #include "routebench/harness/conformance.hpp"
@@ -71,6 +75,58 @@ inline std::vector<Layer> trial_layers() {
   for (std::uint64_t seed = 1; seed <= 10; ++seed)
     layers.push_back(layer_of(random_polygons(seed), static_cast<int>(seed)));
   return layers;
+}
+
+/// An ellipse round a centre, its first axis at an angle.
+inline Polygons ellipse(Point2 centre, double long_mm, double wide_mm, double angle_rad) {
+  const Point2 along{std::cos(angle_rad), std::sin(angle_rad)}, up{-along.y, along.x};
+  Ring ring = circle({0, 0}, 1, 60);
+  for (Point2& p : ring) p = snap(centre + (long_mm / 2 * p.x) * along + (wide_mm / 2 * p.y) * up);
+  return {{ring, {}}};
+}
+
+/// Area of the largest straight bead inside a convex polygon: all pairs of points of a lattice are
+/// tried as its ends, and the best pair is moved about as long as that helps. The distance to a
+/// convex boundary is concave, so a bead that fits at both ends fits between them.
+inline double largest_bead_mm2(const Polygons& convex, double widest_mm) {
+  const EdgeGrid edges(convex);
+  const Box2 box = bounding_box(convex);
+  const auto width_at = [&](Point2 p) {
+    if (!edges.contains(p)) return 0.0;
+    return 2 * edges.distance_to_edge_mm(p, widest_mm / 2).value_or(widest_mm / 2);
+  };
+  const auto area = [](Point2 a, double width_a, Point2 b, double width_b) {
+    const double width_mm = std::min(width_a, width_b);
+    return width_mm * (distance(a, b) + std::numbers::pi / 4 * width_mm);
+  };
+  constexpr int kSide = 32;
+  std::vector<std::pair<Point2, double>> places;
+  for (int i = 0; i <= kSide; ++i)
+    for (int k = 0; k <= kSide; ++k) {
+      const Point2 p{std::lerp(box.lower.x, box.upper.x, 1.0 * i / kSide),
+                     std::lerp(box.lower.y, box.upper.y, 1.0 * k / kSide)};
+      if (const double width_mm = width_at(p); width_mm > 0) places.emplace_back(p, width_mm);
+    }
+  double largest = 0;
+  std::array<Point2, 2> ends;
+  for (const auto& [a, width_a] : places)
+    for (const auto& [b, width_b] : places)
+      if (const double mm2 = area(a, width_a, b, width_b); mm2 > largest) {
+        largest = mm2;
+        ends = {a, b};
+      }
+  std::mt19937_64 random(1);
+  std::normal_distribution<double> step;
+  double reach_mm = distance(box.lower, box.upper) / kSide;
+  for (int i = 0; i < 4000; ++i, reach_mm *= 0.998) {
+    std::array<Point2, 2> moved = ends;
+    for (Point2& p : moved) p = p + reach_mm * Point2{step(random), step(random)};
+    const double mm2 = area(moved[0], width_at(moved[0]), moved[1], width_at(moved[1]));
+    if (mm2 <= largest) continue;
+    largest = mm2;
+    ends = moved;
+  }
+  return largest;
 }
 
 /// Share of the polygons' area that lies under beads, by looking at the points of a turned lattice.

@@ -13,7 +13,7 @@
 #include "model/model_spec.hpp"
 #include "model/placement.hpp"
 #include "model/raw_mesh.hpp"
-#include "model/simplify.hpp"
+#include "model/simplify_mesh.hpp"
 #include "shapes/shapes.hpp"
 
 namespace routebench {
@@ -65,7 +65,7 @@ Model load_model(const std::string& spec, const ModelOptions& options) {
   model.spec = spec;
   models::mend(raw.mesh, name, model.report, raw.warnings);
   if (simplify_share)
-    model.report.simplification = models::simplify(raw.mesh, *simplify_share, name);
+    model.report.simplification = models::simplify_mesh(raw.mesh, *simplify_share, name);
   const double scale = models::place(raw, size_mm, name);
   if (model.report.simplification) model.report.simplification->deviation_mm *= scale;
   const models::Bounds bounds = models::bounds_of(raw.mesh);

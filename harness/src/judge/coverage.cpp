@@ -65,6 +65,18 @@ void add_reach(BitPlane& plane, const std::vector<Run>& runs, double radius_mm, 
   }
 }
 
+/// Adds what lies within radius_mm of the polygons' boundary.
+void grow(BitPlane& plane, const Polygons& polygons, double radius_mm) {
+  const auto add_ring = [&](const Ring& ring) {
+    for (std::size_t i = 0; i < ring.size(); ++i)
+      add_capsule(plane, ring[i == 0 ? ring.size() - 1 : i - 1], ring[i], radius_mm);
+  };
+  for (const Polygon& polygon : polygons) {
+    add_ring(polygon.outer);
+    for (const Ring& hole : polygon.holes) add_ring(hole);
+  }
+}
+
 /// Share of the sparse part that lies within one line distance of a centre line. The reach is many
 /// line widths wide, and so are the steps in which it is sampled.
 double sparse_share_reached(const Polygons& sparse, const std::vector<Run>& runs,
@@ -77,25 +89,13 @@ double sparse_share_reached(const Polygons& sparse, const std::vector<Run>& runs
   const double across = std::max(box.upper.x - box.lower.x, box.upper.y - box.lower.y);
   const double pitch = std::min(reach / kSamplesAcrossReach, across / kSamplesAcrossLayer);
   const SampleGrid grid(sparse, 0, pitch, kMaxSamples);
-  const BitPlane region(grid, sparse);
-  const std::size_t samples = region.count();
-  if (samples == 0) return 1;
+  BitPlane region(grid, sparse);
+  // A sliver may lie between samples: those beside it stand for it.
+  if (region.count() == 0) grow(region, sparse, grid.pitch_mm());
   BitPlane reached(grid);
   add_reach(reached, runs, reach, grid.pitch_mm() / 2);
   const std::size_t hit = region.count([](Word a, Word b) { return a & b; }, reached);
-  return static_cast<double>(hit) / static_cast<double>(samples);
-}
-
-/// Adds what lies within radius_mm of the polygons' boundary.
-void grow(BitPlane& plane, const Polygons& polygons, double radius_mm) {
-  const auto add_ring = [&](const Ring& ring) {
-    for (std::size_t i = 0; i < ring.size(); ++i)
-      add_capsule(plane, ring[i == 0 ? ring.size() - 1 : i - 1], ring[i], radius_mm);
-  };
-  for (const Polygon& polygon : polygons) {
-    add_ring(polygon.outer);
-    for (const Ring& hole : polygon.holes) add_ring(hole);
-  }
+  return static_cast<double>(hit) / static_cast<double>(std::max<std::size_t>(1, region.count()));
 }
 
 std::size_t doubled_samples(const SampleGrid& grid, const std::vector<Run>& runs,

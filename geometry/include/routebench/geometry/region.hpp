@@ -30,8 +30,9 @@ enum class FillRule { kNonZero, kEvenOdd, kPositive };
 
 enum class Join { kMiter, kRound };
 
-/// Grows (distance > 0) or shrinks (distance < 0) polygons by |distance_mm|. The result is cleaned
-/// of points nearer than 5 um to their neighbours' line: without that, repeated offsets lose area.
+/// Grows (distance > 0) or shrinks (distance < 0) polygons by |distance_mm|. The result is cleaned:
+/// some of its points that stay within 5 um of the sides left are taken out (see simplify.hpp).
+/// Without that, repeated offsets lose area.
 /// Cost   O(n log n) typical.
 [[nodiscard]] Polygons offset(const Polygons& polygons, double distance_mm,
                               Join join = Join::kMiter);

@@ -27,10 +27,11 @@ namespace routebench {
 [[nodiscard]] Polygons wall_gaps(const Polygons& polygons, const std::vector<Polygons>& regions,
                                  int count, const PlanContext& context);
 
-/// Lines along the middle of wall_gaps, each as wide as its gap: from a third of a line to a line.
+/// Lines along the middle of wall_gaps, each as wide as its gap: from a third of a line width to
+/// widest_mm.
 [[nodiscard]] std::vector<Stroke> gap_lines(const Polygons& polygons,
                                             const std::vector<Polygons>& regions, int count,
-                                            const PlanContext& context);
+                                            double widest_mm, const PlanContext& context);
 
 /// All rings of polygons: each outer one followed by its holes.
 [[nodiscard]] std::vector<Ring> rings_of(const Polygons& polygons);

@@ -21,6 +21,6 @@ namespace routebench::models {
 ///         encloses anything is left.
 /// Cost    O(n log n); about 1 kB a triangle for the time of the call.
 /// Source  M. Garland and P. Heckbert, 1997, by CGAL; named as an extension by K. De Keyser, 2016.
-[[nodiscard]] Simplification simplify(Mesh& mesh, double share, const std::string& name);
+[[nodiscard]] Simplification simplify_mesh(Mesh& mesh, double share, const std::string& name);
 
 }  // namespace routebench::models

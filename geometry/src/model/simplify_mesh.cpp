@@ -1,4 +1,4 @@
-#include "model/simplify.hpp"
+#include "model/simplify_mesh.hpp"
 
 #include <CGAL/AABB_face_graph_triangle_primitive.h>
 #include <CGAL/AABB_traits.h>
@@ -128,7 +128,7 @@ double farthest(const Surface& from, const Surface& to) {
 
 }  // namespace
 
-Simplification simplify(Mesh& mesh, double share, const std::string& name) {
+Simplification simplify_mesh(Mesh& mesh, double share, const std::string& name) {
   using Policies = collapse::GarlandHeckbert_plane_policies<Surface, Kernel>;
   using Placement = collapse::Constrained_placement<
       collapse::Bounded_normal_change_placement<Policies::Get_placement>, OnBorder>;
