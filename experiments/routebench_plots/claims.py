@@ -12,15 +12,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from matplotlib.lines import Line2D
-from matplotlib.ticker import LogLocator, NullLocator
 
 from . import scaling
-from .axis import axis_label, format_ticks
+from .markdown import markdown_row, markdown_text
 from .quantities import in_sentence, quantity, scale_for
 from .results import Item, Metric, Results
 from .sheet import LegendEntry, Sheet
 from .style import ABSENT, looks
-from .markdown import markdown_row, markdown_text
 
 SIZES = {
     "triangles": Metric("triangles", "Triangles", "", "neither", "cell", ""),
@@ -31,9 +29,6 @@ SIZES = {
     "side_mm": Metric("side_mm", "Largest side", "mm", "neither", "cell", ""),
 }
 """Sizes of models; any other size is a metric of the cell."""
-
-_WIDTH = 5.2
-_HEIGHT = 3.4
 
 
 @dataclass(frozen=True)
@@ -260,8 +255,8 @@ def draw(
     y_scale = scale_for(time, (y for _, y in points))
     contender_looks = looks(results.contenders)
     sheet = Sheet(
-        width=_WIDTH,
-        body_height=_HEIGHT,
+        width=scaling.WIDTH,
+        body_height=scaling.HEIGHT,
         title=title,
         notes=[
             "Full lines are power laws by least squares of the logarithms, "
@@ -299,13 +294,5 @@ def draw(
                 zorder=1,
             )
         )
-    axes.grid(True)
-    axes.set_xscale("log")
-    axes.set_yscale("log")
-    for axis in (axes.xaxis, axes.yaxis):
-        axis.set_major_locator(LogLocator(subs=(1.0,)))
-        axis.set_minor_locator(NullLocator())
-        format_ticks(axis)
-    axes.set_xlabel(axis_label(size, x_scale, _WIDTH - 0.8))
-    axes.set_ylabel(axis_label(time, y_scale, _HEIGHT - 0.5))
+    scaling.set_up_axes(axes, size, x_scale, time, y_scale)
     return sheet

@@ -25,8 +25,8 @@ FEWEST_MODELS = 4
 LEAST_RANGE = 10.0
 """Largest over smallest size below which an exponent says nothing."""
 
-_WIDTH = 5.2
-_HEIGHT = 3.4
+WIDTH = 5.2
+HEIGHT = 3.4
 
 
 @dataclass(frozen=True)
@@ -103,8 +103,8 @@ def draw(
                 slot, None if contender.row_id in found else "of too few sizes"
             )
     sheet = Sheet(
-        width=_WIDTH,
-        body_height=_HEIGHT,
+        width=WIDTH,
+        body_height=HEIGHT,
         title=title,
         notes=[
             "Lines are power laws by least squares of the logarithms; the "
@@ -127,6 +127,14 @@ def draw(
             points, law = found[contender.row_id]
             look = contender_looks[contender.row_id]
             draw_law(axes, points, law, look, x_scale, y_scale)
+    set_up_axes(axes, size, x_scale, time, y_scale)
+    return sheet
+
+
+def set_up_axes(
+    axes: Axes, size: Metric, x_scale: Scale, time: Metric, y_scale: Scale
+) -> None:
+    """Logarithmic axes of size and time with their labels."""
     axes.grid(True)
     for axis, set_scale in (
         (axes.xaxis, axes.set_xscale),
@@ -136,9 +144,8 @@ def draw(
         axis.set_major_locator(LogLocator(subs=(1.0,)))
         axis.set_minor_locator(NullLocator())
         format_ticks(axis)
-    axes.set_xlabel(axis_label(size, x_scale, _WIDTH - 0.8))
-    axes.set_ylabel(axis_label(time, y_scale, _HEIGHT - 0.5))
-    return sheet
+    axes.set_xlabel(axis_label(size, x_scale, WIDTH - 0.8))
+    axes.set_ylabel(axis_label(time, y_scale, HEIGHT - 0.5))
 
 
 def exponent_text(law: Fit) -> str:

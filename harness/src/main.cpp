@@ -19,15 +19,8 @@ namespace {
 constexpr int kExitBadInput = 2;
 constexpr int kExitInternal = 3;
 
-/// Messages are one line, whatever they quote.
-std::string one_line(std::string text) {
-  for (char& c : text)
-    if (c == '\n' || c == '\r') c = ' ';
-  return text;
-}
-
 int complain(const std::string& message, int exit_code) {
-  std::cerr << "routebench: " << one_line(message) << '\n';
+  std::cerr << "routebench: " << routebench::one_line(message) << '\n';
   return exit_code;
 }
 

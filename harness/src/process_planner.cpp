@@ -52,13 +52,6 @@ std::vector<std::string> words_of(const std::string& text) {
   return words;
 }
 
-/// Reasons come from strangers' programs too; a message of ours is one line.
-std::string one_line(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
-  return text;
-}
-
 /// Reads an answer; what is wrong with it is told with its place and the last words beside it.
 template <typename Read>
 auto understood(PlannerProcess& process, Read&& read) {

@@ -1,6 +1,5 @@
 #include "run_cell.hpp"
 
-#include <algorithm>
 #include <functional>
 
 #include "byte_stream.hpp"
@@ -167,12 +166,6 @@ std::string place_of(const ChildEnd& end) {
   if (end.layer < 0) return " before the first layer";
   return std::string(end.phase == ChildProgress::kJudging ? " while judging" : " while planning") +
          " layer " + std::to_string(end.layer);
-}
-
-std::string one_line(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
-  return text;
 }
 
 CellResult without_result(Outcome outcome, const std::string& reason) {

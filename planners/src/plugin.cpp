@@ -3,7 +3,6 @@
 #include <cxxabi.h>
 #include <dlfcn.h>
 
-#include <algorithm>
 #include <cstdlib>
 #include <exception>
 #include <memory>
@@ -13,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "routebench/geometry/error.hpp"
 #include "routebench/planning/sha256.hpp"
 
 namespace routebench {
@@ -25,13 +25,6 @@ struct Refusal {
 
 constexpr const char* kEntryPoint = "routebench_plugin";
 using DescribePlugin = PluginDescription (*)();
-
-/// Reasons come from strangers' code too; a message of ours is one line.
-std::string one_line(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
-  return text;
-}
 
 std::string linker_complaint() {
   const char* complaint = dlerror();

@@ -28,4 +28,7 @@ class Error : public std::runtime_error {
   ErrorKind kind_;
 };
 
+/// A text that may quote anything, with blanks for its line ends: messages are one line.
+[[nodiscard]] std::string one_line(std::string text);
+
 }  // namespace routebench
