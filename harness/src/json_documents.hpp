@@ -21,9 +21,10 @@ struct PlanResult {
   const SlicedModel& model;
   const Judge& judge;
   std::uint64_t seed;
-  std::size_t layers;  ///< that were to be planned
-  const JudgedCell& cell;
+  std::size_t layers;      ///< that were to be planned
+  const JudgedCell* cell;  ///< nullptr: not judged
 };
+/// What is not judged has neither outcome nor scores: they are null.
 [[nodiscard]] Json plan_document(const PlanResult& result);
 
 /// What `score` has done, for its document.

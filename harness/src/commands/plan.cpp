@@ -38,6 +38,7 @@ struct PlanArguments {
   std::uint64_t seed = 1;
   int jobs = 0;
   bool repair = false;
+  bool no_judge = false;
 };
 
 ContenderSpec contender_of(const PlanArguments& arguments, const Registry& registry) {
@@ -78,8 +79,8 @@ class Plan {
                            parallel_for_);
     print_warnings(arguments_.model, model_.sliced.warnings);
     chosen_ = select_layers(arguments_.layers, model_.sliced.layers);
-    plan_and_judge();
-    const bool planned = cell_.verdict.outcome != Outcome::kFailed;
+    const bool planned = plan();
+    if (planned && !arguments_.no_judge) judge();
     OutputSet outputs;
     if (planned && !arguments_.gcode.empty()) add_gcode(outputs);
     if (planned && !arguments_.svg.empty()) add_pictures(outputs);
@@ -91,27 +92,32 @@ class Plan {
     } else {
       print_table(std::cout);
     }
-    return cell_.verdict.outcome == Outcome::kValid ? 0 : kExitNotValid;
+    return !cell_ || cell_->verdict.outcome == Outcome::kValid ? 0 : kExitNotValid;
   }
 
  private:
-  void plan_and_judge() {
+  /// False if a planner has failed.
+  bool plan() {
     try {
       planned_ = plan_layers(*contender_, model_, chosen_, judge_.task(), arguments_.seed, {},
                              parallel_for_);
     } catch (const Error& error) {
       // A planner that breaks its contract is a result like any other.
-      cell_.verdict = {Outcome::kFailed, error.what()};
+      cell_ = {.layers = {}, .totals = {}, .verdict = {Outcome::kFailed, error.what()}};
       std::cerr << "routebench: " << arguments_.model << ": " << error.what() << '\n';
-      return;
+      return false;
     }
+    return true;
+  }
+
+  void judge() {
     cell_ = judge_layers(judge_, model_, chosen_, planned_, parallel_for_);
-    cell_.totals[metric_index("peak_rss_bytes")] = peak_rss_bytes();
+    cell_->totals[metric_index("peak_rss_bytes")] = peak_rss_bytes();
   }
 
   [[nodiscard]] Json document() const {
-    return plan_document(
-        {*contender_, model_.sliced, judge_, arguments_.seed, chosen_.size(), cell_});
+    return plan_document({*contender_, model_.sliced, judge_, arguments_.seed, chosen_.size(),
+                          cell_ ? &*cell_ : nullptr});
   }
 
   void add_gcode(OutputSet& outputs) const {
@@ -143,10 +149,14 @@ class Plan {
     if (model_.sliced.report.repaired_layers > 0)
       out << " (" << model_.sliced.report.repaired_layers << " repaired)";
     out << "\ncontender  " << spec.name << ", order " << to_string(spec.order) << "\noutcome    "
-        << to_string(cell_.verdict.outcome);
-    if (!cell_.verdict.reason.empty()) out << ": " << cell_.verdict.reason;
+        << (cell_ ? to_string(cell_->verdict.outcome) : "planned, not judged");
+    if (!cell_) {
+      out << '\n';
+      return;
+    }
+    if (!cell_->verdict.reason.empty()) out << ": " << cell_->verdict.reason;
     out << '\n';
-    const std::vector<Row> rows = rows_of(cell_.totals);
+    const std::vector<Row> rows = rows_of(cell_->totals);
     if (!rows.empty()) out << '\n';
     print_rows(out, rows);
   }
@@ -159,7 +169,7 @@ class Plan {
   PreparedModel model_;
   std::vector<std::size_t> chosen_;
   std::vector<PlannedLayer> planned_;
-  JudgedCell cell_;
+  std::optional<JudgedCell> cell_;  // nothing if it is not to be judged
 };
 
 }  // namespace
@@ -190,6 +200,9 @@ void add_plan_command(CLI::App& app, int& exit_code) {
       .add_option("--json", arguments->json,
                   "Write every score of every layer; - is the standard output, alone")
       ->type_name("FILE|-");
+  command.add_flag("--no-judge", arguments->no_judge,
+                   "Only plan and write: no outcome and no scores, so the exit code tells nothing "
+                   "of the routes' worth");
   add_plugin_option(command, arguments->plugins);
   add_jobs_option(command, arguments->jobs,
                   "; planning times by the clock on the wall are to be trusted with 1 only");
