@@ -10,16 +10,15 @@
 #include "clipper_paths.hpp"
 #include "overlay/offset_rings.hpp"
 #include "overlay/overlay.hpp"
+#include "overlay/to_grid.hpp"
 #include "routebench/geometry/vec.hpp"
 
 namespace routebench {
 namespace {
 
 namespace cl = ClipperLib;
-using overlay::GridPolygon;
-using overlay::GridRings;
 using overlay::Inside;
-using overlay::Winding;
+using overlay::ToGrid;
 
 // Offsets repeated without cleaning lose area: points a few units apart give mitres that are noise.
 constexpr double kCleanMm = 0.005;
@@ -69,75 +68,13 @@ void add_outer(const cl::PolyNode& node, Polygons& polygons) {
   polygons.push_back(std::move(polygon));
 }
 
-/// Takes rings to the overlay's grid. False if one of them does not fit.
-class ToGrid {
- public:
-  explicit ToGrid(double margin_mm = 0)
-      : most_units_(overlay::kMaxUnits - margin_mm * kGridUnitsPerMm) {}
-
-  bool add(const Polygons& polygons, Winding winding) {
-    return std::all_of(polygons.begin(), polygons.end(), [&](const Polygon& polygon) {
-      return add(polygon.outer, winding) &&
-             std::all_of(polygon.holes.begin(), polygon.holes.end(),
-                         [&](const Ring& hole) { return add(hole, winding); });
-    });
-  }
-
-  bool add(const Ring& ring, Winding winding) {
-    rings_.begin_ring(winding);
-    for (const Point2 p : ring) {
-      const double x = p.x * kGridUnitsPerMm, y = p.y * kGridUnitsPerMm;
-      if (!(std::abs(x) < most_units_ && std::abs(y) < most_units_)) return false;
-      rings_.add({nearest(x), nearest(y)});
-    }
-    rings_.end_ring();
-    return true;
-  }
-
-  [[nodiscard]] GridRings take() { return std::move(rings_); }
-
- private:
-  /// Nearly all are whole; to round the others is a call on plain processors.
-  static std::int32_t nearest(double units) {
-    const auto whole = static_cast<std::int32_t>(units);
-    return static_cast<double>(whole) == units ? whole
-                                               : static_cast<std::int32_t>(std::lrint(units));
-  }
-
-  double most_units_;
-  GridRings rings_;
-};
-
-Ring from_grid_ring(const overlay::GridRing& points) {
-  Ring ring;
-  ring.reserve(points.size());
-  for (const overlay::GridPoint p : points) ring.push_back({from_grid(p.x), from_grid(p.y)});
-  begin_at_smallest(ring);
-  return ring;
-}
-
-/// In canonical form, as from_clipper.
-Polygons from_overlay(const std::vector<GridPolygon>& faces) {
-  Polygons polygons;
-  polygons.reserve(faces.size());
-  for (const GridPolygon& face : faces) {
-    Polygon& polygon = polygons.emplace_back();
-    polygon.outer = from_grid_ring(face.outer);
-    for (const overlay::GridRing& hole : face.holes) polygon.holes.push_back(from_grid_ring(hole));
-    std::sort(polygon.holes.begin(), polygon.holes.end(), ring_less);
-  }
-  std::sort(polygons.begin(), polygons.end(),
-            [](const Polygon& a, const Polygon& b) { return ring_less(a.outer, b.outer); });
-  return polygons;
-}
-
 /// What overlay finds, if it can be used.
 std::optional<Polygons> overlaid(const Polygons& a, const Polygons& b, Inside inside) {
   ToGrid grid;
   if (!grid.add(a, {1, 0}) || !grid.add(b, {0, 1})) return std::nullopt;
   const auto faces = overlay::overlay(grid.take(), inside);
   if (!faces) return std::nullopt;
-  return from_overlay(*faces);
+  return overlay::to_polygons(*faces);
 }
 
 // Clipper takes what the overlay cannot: parts of more than half a metre from the origin.
@@ -161,6 +98,35 @@ double perimeter_of(const Polygon& polygon) {
 }
 
 }  // namespace
+
+namespace overlay {
+namespace {
+
+Ring from_grid_ring(const GridRing& points) {
+  Ring ring;
+  ring.reserve(points.size());
+  for (const GridPoint p : points) ring.push_back({from_grid(p.x), from_grid(p.y)});
+  begin_at_smallest(ring);
+  return ring;
+}
+
+}  // namespace
+
+Polygons to_polygons(const std::vector<GridPolygon>& faces) {
+  Polygons polygons;
+  polygons.reserve(faces.size());
+  for (const GridPolygon& face : faces) {
+    Polygon& polygon = polygons.emplace_back();
+    polygon.outer = from_grid_ring(face.outer);
+    for (const GridRing& hole : face.holes) polygon.holes.push_back(from_grid_ring(hole));
+    std::sort(polygon.holes.begin(), polygon.holes.end(), ring_less);
+  }
+  std::sort(polygons.begin(), polygons.end(),
+            [](const Polygon& a, const Polygon& b) { return ring_less(a.outer, b.outer); });
+  return polygons;
+}
+
+}  // namespace overlay
 
 cl::Path to_clipper(const Ring& ring) {
   cl::Path path;
@@ -242,7 +208,8 @@ Polygons polygons_from_rings(std::vector<Ring> rings, FillRule rule) {
     const Inside inside = rule == FillRule::kNonZero   ? Inside::kFirstNonZero
                           : rule == FillRule::kEvenOdd ? Inside::kFirstOdd
                                                        : Inside::kFirstPositive;
-    if (const auto faces = overlay::overlay(grid.take(), inside)) return from_overlay(*faces);
+    if (const auto faces = overlay::overlay(grid.take(), inside))
+      return overlay::to_polygons(*faces);
   }
   cl::Clipper clipper;
   for (const Ring& ring : rings) clipper.AddPath(to_clipper(ring), cl::ptSubject, true);
@@ -261,7 +228,7 @@ Polygons offset(const Polygons& polygons, double distance_mm, Join join) {
   if (join == Join::kMiter && grid.add(polygons, {1, 0}))
     if (const auto faces = overlay::offset_rings(grid.take(), distance_mm * kGridUnitsPerMm,
                                                  kCleanMm * kGridUnitsPerMm))
-      return from_overlay(*faces);
+      return overlay::to_polygons(*faces);
   cl::ClipperOffset offsetter(kMiterLimit, kArcToleranceMm * kGridUnitsPerMm);
   offsetter.AddPaths(to_clipper(polygons), join == Join::kMiter ? cl::jtMiter : cl::jtRound,
                      cl::etClosedPolygon);

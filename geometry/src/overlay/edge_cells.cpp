@@ -35,23 +35,22 @@ bool is_right_of(const Edge& e, const Edge& f) {
 }
 
 EdgeCells::EdgeCells(const GridRings& rings) {
-  lower_ = rings.points().front();
-  GridPoint upper = lower_;
+  lower_ = upper_ = rings.points().front();
   double extents = 0;
   for (std::uint32_t ring = 0; ring < rings.rings(); ++ring) {
     const std::span<const GridPoint> points = rings.ring(ring);
     GridPoint before = points.back();
     for (const GridPoint p : points) {
       lower_ = {std::min(lower_.x, p.x), std::min(lower_.y, p.y)};
-      upper = {std::max(upper.x, p.x), std::max(upper.y, p.y)};
+      upper_ = {std::max(upper_.x, p.x), std::max(upper_.y, p.y)};
       extents += std::max(std::abs(p.x - before.x), std::abs(p.y - before.y));
       before = p;
     }
   }
   const double edges = rings.size();
-  shift_ = shift_for(upper.x - lower_.x, upper.y - lower_.y, extents / edges, edges);
-  columns_ = column(upper.x) + 1;
-  head_.assign(std::size_t{columns_} * (row(upper.y) + 1), kNone);
+  shift_ = shift_for(upper_.x - lower_.x, upper_.y - lower_.y, extents / edges, edges);
+  columns_ = column(upper_.x) + 1;
+  head_.assign(std::size_t{columns_} * (row(upper_.y) + 1), kNone);
   items_.reserve(2 * std::size_t{rings.size()});
 }
 

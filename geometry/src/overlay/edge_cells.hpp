@@ -33,6 +33,23 @@ class EdgeCells {
     });
   }
 
+  /// Whether a point lies within the bounds.
+  [[nodiscard]] bool cover(GridPoint p) const {
+    return lower_.x <= p.x && p.x <= upper_.x && lower_.y <= p.y && p.y <= upper_.y;
+  }
+
+  /// Whether `is_it` holds for any edge in the cells that another one, within the bounds, runs
+  /// through.
+  template <typename IsIt>
+  [[nodiscard]] bool any_near(const Edge& edge, IsIt&& is_it) const {
+    bool found = false;
+    visit_cells(edge, [&](std::uint32_t cell) {
+      for (std::uint32_t i = head_[cell]; i != kNone && !found; i = items_[i].next)
+        found = is_it(items_[i].edge);
+    });
+    return found;
+  }
+
   /// The first edge that a ray from p to the left meets, of those that `counts` names; kNone if
   /// there is none. The ray runs infinitesimally above p's height, so that it meets no vertex.
   /// Edges must not cross each other.
@@ -56,6 +73,7 @@ class EdgeCells {
   void visit_cells(const Edge& edge, Visit&& visit) const;
 
   GridPoint lower_;
+  GridPoint upper_;
   std::uint32_t shift_ = 0;
   std::uint32_t columns_ = 0;
   std::vector<std::uint32_t> head_;  // of each cell's list, row by row
