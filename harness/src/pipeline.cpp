@@ -36,12 +36,18 @@ void require_task_height(const std::string& file, const std::vector<Layer>& laye
   }
 }
 
+void require_no_facets_wanted(const std::string& layer_file, const Task& task) {
+  if (task.skin_rule != SkinRule::kDifference)
+    throw Error(ErrorKind::kBadInput,
+                layer_file + ": a file of layers has no facets; skin_rule must be difference");
+}
+
 /// Sets Layer::solid by the task's rules: with skins, or only where a whole layer is dense. Only
 /// layers that were cut from a mesh have facets.
 void mark_solid(std::vector<Layer>& layers, const Task& task, const Mesh* mesh, bool with_skins,
                 const ParallelFor& parallel_for) {
   std::vector<bool> dense(layers.size(), false);
-  if (task.skin_rule != SkinRule::kDifference)
+  if (task.skin_rule != SkinRule::kDifference && mesh != nullptr)
     dense = layers_with_flat_facets(
         *mesh, task.skin_rule == SkinRule::kSlope ? FlatRule::kSlope : FlatRule::kNear,
         task.layer_height_mm, layers.size());
@@ -75,9 +81,7 @@ SlicedModel slice_mesh_model(const std::string& spec, const Task& task,
 
 SlicedModel read_layer_file(const std::string& spec, const Task& task,
                             const SliceModelOptions& options, const ParallelFor& parallel_for) {
-  if (task.skin_rule != SkinRule::kDifference)
-    throw Error(ErrorKind::kBadInput,
-                spec + ": a file of layers has no facets; skin_rule must be difference");
+  if (options.find_skins) require_no_facets_wanted(spec, task);
   SlicedModel sliced;
   sliced.layers = read_wkt(spec, task.layer_height_mm);
   require_task_height(spec, sliced.layers, task);
@@ -141,6 +145,7 @@ std::vector<Demand> demands_of(const SlicedModel& sliced, const Task& task,
 
 PreparedModel prepare_model(const std::string& spec, const Task& task,
                             const SliceModelOptions& options, const ParallelFor& parallel_for) {
+  if (is_layer_file(spec)) require_no_facets_wanted(spec, task);
   SliceModelOptions without_skins = options;
   without_skins.find_skins = false;
   PreparedModel model{slice_model(spec, task, without_skins, parallel_for), {}};

@@ -216,14 +216,22 @@ TEST(Overlay, OffsetsKeepTheirDistance) {
           const Point2 p{x, y};
           const double to_edge = distance_to_edge(p);
           if (holds(a, p)) {
-            if (to_edge < step - kCleanMm) EXPECT_FALSE(holds(shrunk, p));
+            if (to_edge < step - kCleanMm) {
+              EXPECT_FALSE(holds(shrunk, p));
+            }
             // Corners that point inwards keep a mitre, at most twice as far.
-            if (to_edge > 2 * step + kCleanMm) EXPECT_TRUE(holds(shrunk, p));
+            if (to_edge > 2 * step + kCleanMm) {
+              EXPECT_TRUE(holds(shrunk, p));
+            }
             EXPECT_TRUE(holds(grown, p) || to_edge < kCleanMm);
           } else {
             EXPECT_FALSE(holds(shrunk, p) && to_edge > kCleanMm);
-            if (to_edge < step - kCleanMm) EXPECT_TRUE(holds(grown, p));
-            if (to_edge > 2 * step + kCleanMm) EXPECT_FALSE(holds(grown, p));
+            if (to_edge < step - kCleanMm) {
+              EXPECT_TRUE(holds(grown, p));
+            }
+            if (to_edge > 2 * step + kCleanMm) {
+              EXPECT_FALSE(holds(grown, p));
+            }
           }
         }
     }

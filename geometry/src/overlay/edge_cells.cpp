@@ -10,7 +10,7 @@ namespace {
 /// Cells as wide as 2^result: a few for each edge, as most of them hold none, but not much narrower
 /// than edges are long.
 std::uint32_t shift_for(double width, double height, double mean_extent, double edges) {
-  constexpr double kCellsPerEdge = 4;
+  constexpr double kCellsPerEdge = 1.5;
   const double count = kCellsPerEdge * edges;
   const double size = std::max(
       {std::sqrt(width * height / count), mean_extent, std::max(width, height) / count, 1.0});

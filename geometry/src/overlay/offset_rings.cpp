@@ -33,12 +33,17 @@ class MovedBoundary {
     const std::size_t n = ring.size();
     normals_.resize(n);
     lengths_.resize(n);
+    used_.resize(n);
     for (std::size_t i = 0; i < n; ++i) {
       const GridPoint a = ring[i], b = ring[i + 1 < n ? i + 1 : 0];
       const double dx = b.x - a.x, dy = b.y - a.y;
       lengths_[i] = std::sqrt(dx * dx + dy * dy);
       normals_[i] = {dy / lengths_[i], -dx / lengths_[i]};
     }
+    for (std::size_t i = 0, before = n - 1; i < n; before = i++)
+      used_[i] = used_at_corner(normals_[before], normals_[i]);
+    // What is left of the moved edges, if every corner is one point.
+    for (std::size_t i = 0; i < n; ++i) lengths_[i] -= used_[i] + used_[i + 1 < n ? i + 1 : 0];
     curve_.begin_ring({1, 0});
     for (std::size_t i = 0, before = n - 1; i < n; before = i++) join(ring[i], before, i);
     curve_.end_ring();
@@ -47,6 +52,13 @@ class MovedBoundary {
   [[nodiscard]] GridRings take() { return std::move(curve_); }
 
  private:
+  /// By how much the moved edges about a corner are shorter if they end where they cross; negative
+  /// if they are longer.
+  [[nodiscard]] double used_at_corner(Vector u, Vector v) const {
+    const double sine = u.x * v.y - u.y * v.x, cosine = u.x * v.x + u.y * v.y;
+    return 1 + cosine < kShortestMitre ? 0 : -distance_ * sine / (1 + cosine);
+  }
+
   /// The curve about the point between two edges.
   void join(GridPoint p, std::size_t before, std::size_t after) {
     const Vector u = normals_[before], v = normals_[after];
@@ -60,8 +72,7 @@ class MovedBoundary {
       go_to(u);
     } else if (sine * distance_ < 0) {
       // The moved edges cross. Where neither is used up by that, only their crossing matters.
-      const double used = std::abs(distance_ * sine) * mitre;
-      if (1 + cosine >= kShortestMitre && used <= std::min(lengths_[before], lengths_[after]) / 2)
+      if (1 + cosine >= kShortestMitre && lengths_[before] >= 0 && lengths_[after] >= 0)
         return go_to(tip);
       go_to(u);
       curve_.add(p);
@@ -81,7 +92,8 @@ class MovedBoundary {
   double distance_;
   GridRings curve_;
   std::vector<Vector> normals_;
-  std::vector<double> lengths_;
+  std::vector<double> lengths_;  // of edges
+  std::vector<double> used_;     // at corners
 };
 
 /// Takes the points away that lie next to their neighbours or to the line between them.
@@ -172,12 +184,12 @@ class Cleaner {
 
 std::optional<std::vector<GridPolygon>> offset_rings(const GridRings& rings, double distance,
                                                      double clean) {
-  Cleaner cleaner(clean);
+  Cleaner smoother(clean), cleaner(clean);
   MovedBoundary boundary(distance, rings.size());
   for (std::uint32_t i = 0; i < rings.rings(); ++i) {
     const std::span<const GridPoint> points = rings.ring(i);
     GridRing ring(points.begin(), points.end());
-    cleaner.clean(ring);  // points as near as this make mitres that are noise
+    smoother.clean(ring);  // points as near as this make mitres that are noise
     if (!ring.empty()) boundary.add(ring);
   }
   std::optional<std::vector<GridPolygon>> grown = overlay(boundary.take(), Inside::kFirstPositive);
