@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -14,7 +15,10 @@ struct Vector {
   double y = 0;
 };
 
-GridPoint moved(GridPoint p, Vector by) {
+double dot(Vector a, Vector b) { return a.x * b.x + a.y * b.y; }
+double cross(Vector a, Vector b) { return a.x * b.y - a.y * b.x; }
+
+GridPoint moved(Vector p, Vector by) {
   const auto rounded = [](double v) {
     return static_cast<std::int32_t>(v < 0 ? v - 0.5 : v + 0.5);
   };
@@ -30,39 +34,96 @@ class MovedBoundary {
   }
 
   void add(std::span<const GridPoint> ring) {
-    const std::size_t n = ring.size();
-    normals_.resize(n);
-    lengths_.resize(n);
-    used_.resize(n);
-    for (std::size_t i = 0; i < n; ++i) {
-      const GridPoint a = ring[i], b = ring[i + 1 < n ? i + 1 : 0];
-      const double dx = b.x - a.x, dy = b.y - a.y;
-      lengths_[i] = std::sqrt(dx * dx + dy * dy);
-      normals_[i] = {dy / lengths_[i], -dx / lengths_[i]};
-    }
-    for (std::size_t i = 0, before = n - 1; i < n; before = i++)
-      used_[i] = used_at_corner(normals_[before], normals_[i]);
-    // What is left of the moved edges, if every corner is one point.
-    for (std::size_t i = 0; i < n; ++i) lengths_[i] -= used_[i] + used_[i + 1 < n ? i + 1 : 0];
+    corners_.clear();
+    for (const GridPoint p : ring)
+      corners_.push_back({static_cast<double>(p.x), static_cast<double>(p.y)});
+    do {
+      measure_edges();
+    } while (drop_used_edges());
+    const std::size_t n = corners_.size();
+    if (n < 3) return;  // nothing is left of the ring
     curve_.begin_ring({1, 0});
-    for (std::size_t i = 0, before = n - 1; i < n; before = i++) join(ring[i], before, i);
+    for (std::size_t i = 0, before = n - 1; i < n; before = i++) join(corners_[i], before, i);
     curve_.end_ring();
   }
 
   [[nodiscard]] GridRings take() { return std::move(curve_); }
 
  private:
+  /// Normals, and what is left of the moved edges if every corner is one point.
+  void measure_edges() {
+    const std::size_t n = corners_.size();
+    normals_.resize(n);
+    left_.resize(n);
+    used_.resize(n);
+    for (std::size_t i = 0; i < n; ++i) {
+      const Vector a = corners_[i], b = corners_[i + 1 < n ? i + 1 : 0];
+      const double dx = b.x - a.x, dy = b.y - a.y;
+      left_[i] = std::sqrt(dx * dx + dy * dy);
+      normals_[i] = {dy / left_[i], -dx / left_[i]};
+    }
+    for (std::size_t i = 0, before = n - 1; i < n; before = i++)
+      used_[i] = used_at_corner(normals_[before], normals_[i]);
+    for (std::size_t i = 0; i < n; ++i) left_[i] -= used_[i] + used_[i + 1 < n ? i + 1 : 0];
+  }
+
   /// By how much the moved edges about a corner are shorter if they end where they cross; negative
   /// if they are longer.
   [[nodiscard]] double used_at_corner(Vector u, Vector v) const {
-    const double sine = u.x * v.y - u.y * v.x, cosine = u.x * v.x + u.y * v.y;
+    const double sine = cross(u, v), cosine = dot(u, v);
     return 1 + cosine < kShortestMitre ? 0 : -distance_ * sine / (1 + cosine);
   }
 
+  /// Edges between two corners at which moved edges cross, and of which nothing is left, are gone
+  /// before the boundary has moved all the way: from then on their neighbours meet, which are
+  /// farther from them than the distance. So they may as well have met from the beginning. True if
+  /// there was such an edge.
+  bool drop_used_edges() {
+    const std::size_t n = corners_.size();
+    if (n < 4) return false;
+    kept_.clear();
+    bool dropped = false;
+    const auto are_one = [](Vector a, Vector b) {
+      return std::abs(a.x - b.x) + std::abs(a.y - b.y) < 1;
+    };
+    const auto keep = [&](Vector p) {
+      if (kept_.empty() || !are_one(kept_.back(), p)) kept_.push_back(p);
+    };
+    for (std::size_t i = 0; i < n; ++i) {
+      const std::size_t next = i + 1 < n ? i + 1 : 0, before = i > 0 ? i - 1 : n - 1;
+      const bool may_go = left_[i] < 0 && used_[i] > 0 && used_[next] > 0 && next != 0;
+      if (may_go) {
+        if (const std::optional<Vector> meeting = meeting_of(before, next)) {
+          keep(*meeting);
+          dropped = true;
+          ++i;  // both ends are replaced
+          continue;
+        }
+      }
+      keep(corners_[i]);
+    }
+    if (!dropped) return false;
+    while (kept_.size() > 1 && are_one(kept_.back(), kept_.front())) kept_.pop_back();
+    std::swap(corners_, kept_);
+    return corners_.size() >= 3;
+  }
+
+  /// Where the lines of two edges meet, if they turn less than a mitre allows.
+  [[nodiscard]] std::optional<Vector> meeting_of(std::size_t e, std::size_t f) const {
+    const Vector u = normals_[e], v = normals_[f];
+    const double sine = cross(u, v);
+    if (sine * distance_ >= 0 || 1 + dot(u, v) < kShortestMitre) return std::nullopt;
+    // Along e, whose direction is its normal turned left.
+    const Vector along{-u.y, u.x}, from = corners_[e], to = corners_[f];
+    const Vector gap{to.x - from.x, to.y - from.y};
+    const double share = dot(gap, v) / dot(along, v);
+    return Vector{from.x + share * along.x, from.y + share * along.y};
+  }
+
   /// The curve about the point between two edges.
-  void join(GridPoint p, std::size_t before, std::size_t after) {
+  void join(Vector p, std::size_t before, std::size_t after) {
     const Vector u = normals_[before], v = normals_[after];
-    const double sine = u.x * v.y - u.y * v.x, cosine = u.x * v.x + u.y * v.y;
+    const double sine = cross(u, v), cosine = dot(u, v);
     const auto go_to = [&](Vector by) {
       curve_.add(moved(p, {distance_ * by.x, distance_ * by.y}));
     };
@@ -72,10 +133,10 @@ class MovedBoundary {
       go_to(u);
     } else if (sine * distance_ < 0) {
       // The moved edges cross. Where neither is used up by that, only their crossing matters.
-      if (1 + cosine >= kShortestMitre && lengths_[before] >= 0 && lengths_[after] >= 0)
+      if (1 + cosine >= kShortestMitre && left_[before] >= 0 && left_[after] >= 0)
         return go_to(tip);
       go_to(u);
-      curve_.add(p);
+      curve_.add(moved(p, {}));
       go_to(v);
     } else if (1 + cosine >= kShortestMitre) {
       go_to(tip);
@@ -91,8 +152,10 @@ class MovedBoundary {
 
   double distance_;
   GridRings curve_;
-  std::vector<Vector> normals_;
-  std::vector<double> lengths_;  // of edges
+  std::vector<Vector> corners_;  // of the ring, corner i at the beginning of edge i
+  std::vector<Vector> kept_;
+  std::vector<Vector> normals_;  // of edges
+  std::vector<double> left_;     // of edges
   std::vector<double> used_;     // at corners
 };
 
