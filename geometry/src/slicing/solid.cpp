@@ -93,12 +93,13 @@ Polygons SkinFinder::skins_in(const Polygons& region, std::size_t layer) const {
   const std::size_t reach = impl_->reach, count = impl_->layers.size();
   if (reach == 0 || region.empty()) return {};
   if (layer < reach || layer + reach >= count) return region;
-  const Impl::Index own = Impl::index_of(region);
+  Impl::Index own = Impl::index_of(region);
   Polygons common = region;
   const auto cut_by = [&](std::size_t other) {
     const Impl::Index& index = impl_->indices[other];
-    if (own && index && index->holds_all_of(*own)) return;
+    if (common.empty() || (own && index && index->holds_all_of(*own))) return;
     common = intersect(common, impl_->layers[other].polygons);
+    own = Impl::index_of(common);
   };
   // The farthest first: what they leave is mostly held by the nearer ones.
   for (std::size_t distance = reach; distance > 0; --distance) {
