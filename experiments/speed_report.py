@@ -168,22 +168,31 @@ def execute(command: list[str], model: Path, cores: int, scratch: Path) -> Run |
                usage.ru_maxrss / 1024, out.stat().st_size)
 
 
-def measure(models: list[Path], commands: dict[str, list[str]], cores: list[int],
-            repetitions: int, scratch: Path) -> list[Run]:
-    order = random.Random(1)
+def measure(model: Path, commands: dict[str, list[str]], cores: list[int], repetitions: int,
+            scratch: Path) -> list[Run]:
+    order = random.Random(model.stem)
     runs: list[Run] = []
-    for model in models:
-        for repetition in range(repetitions):
-            cells = [(name, count) for name in commands for count in cores]
-            for name, count in order.sample(cells, len(cells)):
-                run = execute(commands[name], model, count, scratch)
-                print(f"{model.stem} {repetition + 1}/{repetitions} {name} on {count}: "
-                      + (f"{run.wall_s:.2f} s, CPU {run.cpu_s:.2f} s" if run else "failed"),
-                      file=sys.stderr, flush=True)
-                if run:
-                    run.model, run.contender = model.stem, name
-                    runs.append(run)
+    for repetition in range(repetitions):
+        cells = [(name, count) for name in commands for count in cores]
+        for name, count in order.sample(cells, len(cells)):
+            run = execute(commands[name], model, count, scratch)
+            print(f"{model.stem} {repetition + 1}/{repetitions} {name} on {count}: "
+                  + (f"{run.wall_s:.2f} s, CPU {run.cpu_s:.2f} s" if run else "failed"),
+                  file=sys.stderr, flush=True)
+            if run:
+                run.model, run.contender = model.stem, name
+                runs.append(run)
     return runs
+
+
+def write_page(folder: Path, runs: list[Run], text: str) -> None:
+    folder.mkdir(parents=True, exist_ok=True)
+    with (folder / "runs.csv").open("w", encoding="utf-8", newline="") as file:
+        writer = csv.DictWriter(file, list(Run.__dataclass_fields__), lineterminator="\n")
+        writer.writeheader()
+        writer.writerows({key: round(value, 4) if isinstance(value, float) else value
+                          for key, value in asdict(run).items()} for run in runs)
+    (folder / "README.md").write_text(text, encoding="utf-8")
 
 
 def instructions(program: Path, model: str, scratch: Path, judged: bool) -> dict[str, float] | None:
@@ -306,7 +315,6 @@ def main() -> None:
         scratch = Path(folder)
         commands, missing = contenders(arguments.program.resolve(), scratch)
         models = chosen_models(arguments.models, [n for n in arguments.only.split(",") if n])
-        runs = measure(models, commands, cores, arguments.repetitions, scratch)
         profiles = []
         if arguments.before and shutil.which("valgrind"):
             for model in PROFILED:
@@ -315,15 +323,12 @@ def main() -> None:
                 after = instructions(arguments.program.resolve(), path, scratch, False)
                 if before and after:
                     profiles.append((model, before, after))
-    arguments.out.mkdir(parents=True, exist_ok=True)
-    with (arguments.out / "runs.csv").open("w", encoding="utf-8", newline="") as file:
-        writer = csv.DictWriter(file, list(asdict(runs[0])), lineterminator="\n")
-        writer.writeheader()
-        writer.writerows({key: round(value, 4) if isinstance(value, float) else value
-                          for key, value in asdict(run).items()} for run in runs)
-    (arguments.out / "README.md").write_text(
-        page(runs, missing, cores, arguments.repetitions, profiles, load, commit),
-        encoding="utf-8")
+        runs: list[Run] = []
+        for model in models:
+            runs += measure(model, commands, cores, arguments.repetitions, scratch)
+            # After every model, so that a long run that is ended leaves a page of what it has seen.
+            write_page(arguments.out, runs,
+                       page(runs, missing, cores, arguments.repetitions, profiles, load, commit))
     print(arguments.out / "README.md")
 
 

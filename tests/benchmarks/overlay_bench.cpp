@@ -12,7 +12,7 @@ namespace {
 using namespace routebench;
 
 void over_points(benchmark::internal::Benchmark* bench) {
-  bench->RangeMultiplier(4)->Range(64, 1 << 16)->Unit(benchmark::kMicrosecond)->Complexity();
+  bench->RangeMultiplier(4)->Range(64, 1 << 14)->Unit(benchmark::kMicrosecond)->Complexity();
 }
 
 void shrink_by_a_line(benchmark::State& state) {
