@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "judge/bit_plane.hpp"
 #include "judge/capsule.hpp"
@@ -65,25 +66,39 @@ void add_reach(BitPlane& plane, const std::vector<Run>& runs, double radius_mm, 
   }
 }
 
+/// How far a sparse line reaches.
+double reach_mm(const Task& task) { return task.spacing_mm() / task.density; }
+
 /// Share of the sparse part that lies within one line distance of a centre line. The reach is many
-/// line widths wide, and so are the steps in which it is sampled.
-double sparse_share_reached(const Polygons& sparse, const std::vector<Run>& runs,
-                            const Task& task) {
+/// line widths wide, and so are the steps in which it is sampled: nothing if the part slips through
+/// between them.
+std::optional<double> sparse_share_reached(const Polygons& sparse, const std::vector<Run>& runs,
+                                           const Task& task) {
   constexpr double kSamplesAcrossReach = 16;
   constexpr double kSamplesAcrossLayer = 128;
   constexpr double kMaxSamples = 4194304;  // 2^22
-  const double reach = task.spacing_mm() / task.density;
+  const double reach = reach_mm(task);
   const Box2 box = bounding_box(sparse);
   const double across = std::max(box.upper.x - box.lower.x, box.upper.y - box.lower.y);
   const double pitch = std::min(reach / kSamplesAcrossReach, across / kSamplesAcrossLayer);
   const SampleGrid grid(sparse, 0, pitch, kMaxSamples);
   const BitPlane region(grid, sparse);
   const std::size_t samples = region.count();
-  if (samples == 0) return 1;
+  if (samples == 0) return std::nullopt;
   BitPlane reached(grid);
   add_reach(reached, runs, reach, grid.pitch_mm() / 2);
   const std::size_t hit = region.count([](Word a, Word b) { return a & b; }, reached);
   return static_cast<double>(hit) / static_cast<double>(samples);
+}
+
+/// As above by the layer's own samples, of which `sparse` are in the part.
+double sparse_share_reached_finely(const LayerSamples& samples, std::size_t sparse,
+                                   const std::vector<Run>& runs, const Task& task) {
+  BitPlane reached(samples.grid);
+  add_reach(reached, runs, reach_mm(task), samples.grid.pitch_mm() / 2);
+  const std::size_t hit = samples.outline.count([](Word p, Word s, Word r) { return p & s & r; },
+                                                samples.sparse, reached);
+  return static_cast<double>(hit) / static_cast<double>(sparse);
 }
 
 /// Adds what lies within radius_mm of the polygons' boundary.
@@ -135,8 +150,12 @@ Coverage measure_coverage(const LayerSamples& samples, std::size_t outline_sampl
       [](Word p, Word s, Word b) { return p & ~s & b; }, samples.sparse, beads);
   const std::size_t sparse =
       samples.outline.count([](Word p, Word s) { return p & s; }, samples.sparse);
-  const double sparse_reached =
-      sparse > 0 && task.density > 0 ? sparse_share_reached(demand.sparse, runs, task) : 1;
+  double sparse_reached = 1;
+  if (sparse > 0 && task.density > 0) {
+    const std::optional<double> share_reached = sparse_share_reached(demand.sparse, runs, task);
+    sparse_reached =
+        share_reached ? *share_reached : sparse_share_reached_finely(samples, sparse, runs, task);
+  }
   result.covered =
       share(static_cast<double>(under_beads) + static_cast<double>(sparse) * sparse_reached);
 
