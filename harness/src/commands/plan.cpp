@@ -125,8 +125,10 @@ class Plan {
       const std::vector<std::string> comments = {
           "model = " + arguments_.model, "contender = " + text_of(json_of(*contender_), true)};
       GcodeWriter writer(out, judge_.task(), judge_.printer(), comments);
+      std::vector<RoutedLayer> layers;
       for (std::size_t i = 0; i < chosen_.size(); ++i)
-        writer.write_layer(model_.sliced.layers[chosen_[i]], planned_[i]);
+        layers.push_back({&model_.sliced.layers[chosen_[i]], &planned_[i]});
+      writer.write_layers(layers, parallel_for_);
       writer.finish();
     });
   }
