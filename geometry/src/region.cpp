@@ -77,7 +77,7 @@ std::optional<Polygons> overlaid(const Polygons& a, const Polygons& b, Inside in
   return overlay::to_polygons(*faces);
 }
 
-// Clipper takes what the overlay cannot: parts of more than half a metre from the origin.
+// Clipper takes what the overlay cannot: parts of more than a metre from the origin.
 Polygons clip(cl::ClipType operation, const Polygons& a, const Polygons& b) {
   const Inside inside = operation == cl::ctUnion          ? Inside::kEither
                         : operation == cl::ctIntersection ? Inside::kBoth

@@ -22,6 +22,19 @@ void shrink_by_a_line(benchmark::State& state) {
 }
 BENCHMARK(shrink_by_a_line)->Apply(over_points);
 
+/// A large disc of very short edges.
+void shrink_a_disc(benchmark::State& state) {
+  const auto points = static_cast<int>(state.range(0));
+  const Polygons disc = {{test::star(1, points, {256, 256}, 256.0, 256.0), {}}};
+  for (auto _ : state) benchmark::DoNotOptimize(offset(disc, -0.1));
+  state.SetComplexityN(state.range(0));
+}
+BENCHMARK(shrink_a_disc)
+    ->RangeMultiplier(4)
+    ->Range(1 << 10, 1 << 18)
+    ->Unit(benchmark::kMicrosecond)
+    ->Complexity();
+
 /// Two outlines that cross often, as those of neighbouring layers do.
 template <Polygons (*kOperation)(const Polygons&, const Polygons&)>
 void boolean(benchmark::State& state) {

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <random>
 #include <vector>
 
@@ -175,10 +177,12 @@ TEST(Overlay, HolesMayTouchWhatIsAroundThem) {
             2u);
 }
 
-// Beyond half a metre from the origin another library takes over: both must agree.
+// Beyond a metre from the origin another library takes over: both must agree. Up to there
+// differences of coordinates need all of 32 bits.
 TEST(Overlay, DoesNotDependOnThePlace) {
-  const Point2 far{600, -700};
+  const std::vector<Point2> places = {{980, -1010}, {1200, -1300}};
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    const Point2 far = places[seed % places.size()];
     const Polygons a = test::random_polygons(seed), b = test::random_polygons(seed + 50);
     const Polygons far_a = moved(a, far), far_b = moved(b, far);
     EXPECT_LT(difference_mm2(moved(unite(a, b), far), unite(far_a, far_b)), 1e-3);
@@ -192,6 +196,46 @@ TEST(Overlay, DoesNotDependOnThePlace) {
           << "seed " << seed << ", by " << distance;
     }
   }
+}
+
+TEST(Overlay, TakesPartsAsLargeAsItsGrid) {
+  // Edges from end to end: products of two differences need all of 64 bits.
+  constexpr double kEnd = 1023.9;
+  const Polygons diamond = {{{{0, -kEnd}, {kEnd, 0}, {0, kEnd}, {-kEnd, 0}}, {}}};
+  const Polygons square = {{test::rectangle(-kEnd, -kEnd, kEnd, kEnd), {}}};
+  const Polygons band = {
+      {{{-kEnd, -kEnd}, {-kEnd + 1, -kEnd}, {kEnd, kEnd}, {kEnd - 1, kEnd}}, {}}};
+  const double all = 4 * kEnd * kEnd;
+  EXPECT_NEAR(area_mm2(intersect(square, diamond)), all / 2, 1e-6 * all);
+  EXPECT_NEAR(area_mm2(subtract(square, diamond)), all / 2, 1e-6 * all);
+  EXPECT_NEAR(area_mm2(unite(diamond, band)) + area_mm2(intersect(diamond, band)),
+              area_mm2(diamond) + area_mm2(band), 1e-6 * all);
+  const double step = 2, inner = 2 * (kEnd - step);
+  EXPECT_NEAR(area_mm2(offset(square, -step)), inner * inner, 1e-6 * all);
+}
+
+TEST(Overlay, OffsetsOfFineCurvesKeepTheirDistance) {
+  // Where cleaning asks of each point only whether it is near the line between its neighbours, one
+  // after the other goes and the boundary creeps inwards by as much as one likes.
+  constexpr double kCleanMm = 0.012;
+  for (const double radius : {5.0, 256.0})
+    for (const int points : {1000, 10000, 100000})
+      for (const double step : {-0.5, -0.1, 0.1, 0.5}) {
+        Ring ring;
+        for (int i = 0; i < points; ++i) {
+          const double angle = 2 * std::numbers::pi * i / points;
+          ring.push_back(snap(radius * Point2{std::cos(angle), std::sin(angle)}));
+        }
+        const Polygons disc = polygons_from_rings({ring}, FillRule::kNonZero);
+        const Polygons moved = offset(disc, step);
+        ASSERT_EQ(moved.size(), 1u);
+        const double chord = std::pow(std::numbers::pi / points, 2) * radius;  // twice its height
+        for (const Point2 p : moved[0].outer)
+          EXPECT_NEAR(distance(p, {0, 0}), radius + step, kCleanMm + chord)
+              << radius << ", " << points;
+        EXPECT_NEAR(area_mm2(moved), std::numbers::pi * std::pow(radius + step, 2),
+                    2 * std::numbers::pi * radius * (kCleanMm + chord));
+      }
 }
 
 TEST(Overlay, OffsetsKeepTheirDistance) {

@@ -18,7 +18,7 @@ struct GridPoint {
   friend auto operator<=>(const GridPoint&, const GridPoint&) = default;
 };
 
-inline constexpr std::int32_t kMaxUnits = 1 << 29;  // 512 mm
+inline constexpr std::int32_t kMaxUnits = (1 << 30) - 1;  // 1024 mm
 
 inline constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 

@@ -159,10 +159,12 @@ class MovedBoundary {
   std::vector<double> used_;     // at corners
 };
 
-/// Takes the points away that lie next to their neighbours or to the line between them.
+/// Takes the points away that lie next to their neighbours or to the line between them. However
+/// many go, and however short the edges of a curve are, no edge strays further from the points that
+/// it stands for than `reach`.
 class Cleaner {
  public:
-  explicit Cleaner(double reach) : reach2_(reach * reach) {}
+  explicit Cleaner(double reach) : reach_(reach), reach2_(reach * reach) {}
 
   /// True if the ring has lost points. It may be left with none.
   bool clean(GridRing& ring) {
@@ -170,6 +172,7 @@ class Cleaner {
     next_.resize(n);
     previous_.resize(n);
     settled_.assign(n, 0);
+    strayed_.assign(n, 0);
     for (std::size_t i = 0; i < n; ++i) {
       next_[i] = i + 1 < n ? i + 1 : 0;
       previous_[i] = i > 0 ? i - 1 : n - 1;
@@ -177,12 +180,14 @@ class Cleaner {
     std::size_t size = n, at = 0;
     while (size > 2 && settled_[at] == 0) {
       const GridPoint before = ring[previous_[at]], here = ring[at], after = ring[next_[at]];
-      if (are_near(here, before) || is_near_line(before, here, after)) {
-        at = remove(at);
+      const double strays =
+          std::max(strayed_[previous_[at]], strayed_[at]) + height(before, here, after);
+      if (strays < reach_) {
+        at = remove(at, strays);
         --size;
       } else if (are_near(before, after)) {
-        remove(next_[at]);
-        at = remove(at);
+        remove(next_[at], 0);
+        at = remove(at, 0);
         size -= 2;
       } else {
         settled_[at] = 1;
@@ -212,11 +217,13 @@ class Cleaner {
   [[nodiscard]] const std::vector<std::uint8_t>& moved() const { return moved_; }
 
  private:
-  /// Returns the point before, which has to be looked at again.
-  std::size_t remove(std::size_t at) {
+  /// Takes a point away; the edge that then stands for it strays so far. Returns the point before,
+  /// which has to be looked at again.
+  std::size_t remove(std::size_t at, double strays) {
     next_[previous_[at]] = next_[at];
     previous_[next_[at]] = previous_[at];
     settled_[previous_[at]] = 0;
+    strayed_[previous_[at]] = strays;
     return previous_[at];
   }
 
@@ -225,21 +232,22 @@ class Cleaner {
     return dx * dx + dy * dy <= reach2_;
   }
 
-  /// Whether the middle one of three points, in whichever order they lie, is near the line through
+  /// How far the middle one of three points, in whichever order they lie, is from the line through
   /// the others.
-  [[nodiscard]] bool is_near_line(GridPoint a, GridPoint b, GridPoint c) const {
-    const double twice_area = static_cast<double>(turn(a, b, c));
+  [[nodiscard]] static double height(GridPoint a, GridPoint b, GridPoint c) {
     const auto square = [](GridPoint p, GridPoint q) {
       const double dx = p.x - q.x, dy = p.y - q.y;
       return dx * dx + dy * dy;
     };
     const double longest2 = std::max({square(a, b), square(b, c), square(a, c)});
-    return twice_area * twice_area < reach2_ * longest2;
+    return longest2 > 0 ? static_cast<double>(std::abs(turn(a, b, c))) / std::sqrt(longest2) : 0;
   }
 
+  double reach_;
   double reach2_;
   std::vector<std::size_t> next_, previous_;
   std::vector<std::uint8_t> settled_;
+  std::vector<double> strayed_;  // edges, by the point that they begin at
   std::vector<std::uint8_t> moved_;
 };
 
