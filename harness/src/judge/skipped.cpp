@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 
 #include "judge/bit_plane.hpp"
@@ -144,12 +145,17 @@ class PartLedger {
     const Point2 run = grid_.to_steps(lerp(a, b, shares.leave)) - from;
     const double count =
         std::ceil(grid_.to_steps(length_mm) * 2 / static_cast<double>(cell_steps_));
-    const auto nearest = [](double steps, std::size_t end) {
-      return static_cast<std::size_t>(std::clamp(steps + 0.5, 0.0, static_cast<double>(end - 1)));
+    const auto nearest = [](double steps, double last) {
+      // By way of a signed number: to an unsigned one is several instructions on most processors.
+      return static_cast<std::size_t>(
+          static_cast<std::int64_t>(std::clamp(steps + 0.5, 0.0, last)));
     };
+    const double last_column = static_cast<double>(grid_.columns() - 1);
+    const double last_row = static_cast<double>(grid_.rows() - 1);
+    const double piece_mm = length_mm / count;
     for (double i = 0; i < count; i += 1) {
       const Point2 middle = from + ((i + 0.5) / count) * run;
-      visit(nearest(middle.x, grid_.columns()), nearest(middle.y, grid_.rows()), length_mm / count);
+      visit(nearest(middle.x, last_column), nearest(middle.y, last_row), piece_mm);
     }
   }
 
