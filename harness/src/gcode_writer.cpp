@@ -383,7 +383,7 @@ GcodeWriter::GcodeWriter(std::ostream& out, const Task& task, const Printer& pri
 void GcodeWriter::write_layers(std::span<const RoutedLayer> layers,
                                const ParallelFor& parallel_for) {
   // Some layers are formatted at the same time as those before them are written.
-  constexpr std::size_t kLayersTogether = 64;
+  constexpr std::size_t kLayersTogether = 16;
   std::vector<std::string> ready;
   const auto write_ready = [this, &ready] {
     for (const std::string& text : ready) write(text);
