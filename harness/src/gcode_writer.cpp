@@ -78,7 +78,7 @@ class FilamentCounter {
  public:
   FilamentCounter(const Task& task, const Printer& printer, const GcodeDialect& dialect,
                   double length, std::int64_t units)
-      : height_mm_(task.layer_height_mm),
+      : task_(task),
         section_mm2_(dialect.volumetric
                          ? 1
                          : std::numbers::pi / 4 * printer.filament_mm * printer.filament_mm),
@@ -87,8 +87,9 @@ class FilamentCounter {
 
   /// Calls visit(end of the move, units for it, units in all) for every move of a stroke.
   template <typename Visit>
-  void count(const Stroke& stroke, const Task& task, Visit&& visit) {
-    const double share = task.mean_width_mm(stroke.width_mm) * height_mm_ / section_mm2_;
+  void count(const Stroke& stroke, Visit&& visit) {
+    const double share =
+        task_.mean_width_mm(stroke.width_mm) * task_.layer_height_mm / section_mm2_;
     for (std::size_t i = 1; i < stroke.points.size(); ++i) {
       const Point2 from = stroke.points[i - 1];
       const Point2 to = stroke.points[i];
@@ -106,9 +107,9 @@ class FilamentCounter {
   [[nodiscard]] std::int64_t units() const noexcept { return units_; }
 
  private:
-  double height_mm_;
-  double section_mm2_;
-  double length_;  // mm or mm3
+  const Task& task_;
+  double section_mm2_;  // of the filament; 1 where it is counted in mm3
+  double length_;       // mm or mm3
   std::int64_t units_;
 };
 
@@ -261,7 +262,7 @@ class LayerText {
   }
 
   void extrude(const Stroke& stroke) {
-    filament_.count(stroke, task_, [this](Point2 to, std::int64_t units, std::int64_t all_units) {
+    filament_.count(stroke, [this](Point2 to, std::int64_t units, std::int64_t all_units) {
       begin_line("G1");
       put_place(to);
       text_.put(" E");
@@ -416,7 +417,7 @@ void GcodeWriter::go_on_by(const RoutedLayer& routed) {
   FilamentCounter filament(task_, printer_, *dialect_, progress_.filament,
                            progress_.filament_units);
   for (const Stroke& stroke : strokes)
-    filament.count(stroke, task_, [](Point2, std::int64_t, std::int64_t) {});
+    filament.count(stroke, [](Point2, std::int64_t, std::int64_t) {});
   progress_ = {.nozzle = strokes.back().points.back(),
                .z_mm = LayerText::height_mm(*routed.layer),
                .layers = progress_.layers + 1,

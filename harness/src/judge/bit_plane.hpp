@@ -2,7 +2,6 @@
 /// A set of samples, one bit each.
 
 #include <algorithm>
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -28,7 +27,6 @@ class BitPlane {
 
   [[nodiscard]] const SampleGrid& grid() const noexcept { return *grid_; }
   [[nodiscard]] std::size_t row_words() const noexcept { return row_words_; }
-  [[nodiscard]] const std::vector<Word>& words() const noexcept { return words_; }
 
   [[nodiscard]] const Word* row(std::size_t row) const { return words_.data() + row * row_words_; }
   [[nodiscard]] bool test(std::size_t column, std::size_t row) const {
