@@ -62,12 +62,12 @@ EdgeGrid::EdgeGrid(const Polygons& polygons) {
 }
 
 std::int64_t EdgeGrid::column(double x) const {
-  const double cell = std::floor((x - lower_.x) / cell_mm_);
+  const double cell = (x - lower_.x) / cell_mm_;
   return static_cast<std::int64_t>(std::clamp(cell, 0.0, static_cast<double>(column_count_ - 1)));
 }
 
 std::int64_t EdgeGrid::row(double y) const {
-  const double cell = std::floor((y - lower_.y) / cell_mm_);
+  const double cell = (y - lower_.y) / cell_mm_;
   return static_cast<std::int64_t>(std::clamp(cell, 0.0, static_cast<double>(row_count_ - 1)));
 }
 
@@ -104,11 +104,15 @@ void EdgeGrid::visit_cells(Point2 a, Point2 b, double margin_mm, Visit&& visit) 
 std::vector<std::uint32_t> EdgeGrid::edges_near(Point2 a, Point2 b, double margin_mm) const {
   std::vector<std::uint32_t> found;
   if (edges_.empty()) return found;
+  std::size_t cells_with_edges = 0;
   visit_cells(a, b, margin_mm, [&](std::int64_t cell) {
     const auto c = static_cast<std::size_t>(cell);
+    if (cells_.begin[c] == cells_.begin[c + 1]) return;
+    ++cells_with_edges;
     found.insert(found.end(), cells_.items.begin() + cells_.begin[c],
                  cells_.items.begin() + cells_.begin[c + 1]);
   });
+  if (cells_with_edges <= 1) return found;  // a cell's are in order
   std::sort(found.begin(), found.end());
   found.erase(std::unique(found.begin(), found.end()), found.end());
   return found;
@@ -155,9 +159,10 @@ std::vector<double> EdgeGrid::crossings(Point2 a, Point2 b) const {
 
 double EdgeGrid::outside_length_mm(Point2 a, Point2 b) const {
   std::vector<double> shares = crossings(a, b);
+  const double length = distance(a, b);
+  if (shares.empty()) return length <= kOnEdgeMm || contains(lerp(a, b, 0.5)) ? 0 : length;
   shares.insert(shares.begin(), 0.0);
   shares.push_back(1.0);
-  const double length = distance(a, b);
   double outside = 0;
   for (std::size_t i = 1; i < shares.size(); ++i) {
     const double piece = (shares[i] - shares[i - 1]) * length;

@@ -4,9 +4,13 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "clipper_paths.hpp"
+#include "overlay/offset_rings.hpp"
+#include "overlay/overlay.hpp"
+#include "overlay/to_grid.hpp"
 #include "routebench/geometry/simplify.hpp"
 #include "routebench/geometry/vec.hpp"
 
@@ -14,6 +18,8 @@ namespace routebench {
 namespace {
 
 namespace cl = ClipperLib;
+using overlay::Inside;
+using overlay::ToGrid;
 
 // Offsets repeated without cleaning lose area: points a few units apart give mitres that are noise.
 constexpr double kCleanMm = 0.005;
@@ -63,7 +69,21 @@ void add_outer(const cl::PolyNode& node, Polygons& polygons) {
   polygons.push_back(std::move(polygon));
 }
 
+/// What overlay finds, if it can be used.
+std::optional<Polygons> overlaid(const Polygons& a, const Polygons& b, Inside inside) {
+  ToGrid grid;
+  if (!grid.add(a, {1, 0}) || !grid.add(b, {0, 1})) return std::nullopt;
+  const auto faces = overlay::overlay(grid.take(), inside);
+  if (!faces) return std::nullopt;
+  return overlay::to_polygons(*faces);
+}
+
+// Clipper takes what the overlay cannot: parts of more than a metre from the origin.
 Polygons clip(cl::ClipType operation, const Polygons& a, const Polygons& b) {
+  const Inside inside = operation == cl::ctUnion          ? Inside::kEither
+                        : operation == cl::ctIntersection ? Inside::kBoth
+                                                          : Inside::kFirstOnly;
+  if (auto polygons = overlaid(a, b, inside)) return *std::move(polygons);
   cl::Clipper clipper;
   clipper.AddPaths(to_clipper(a), cl::ptSubject, true);
   clipper.AddPaths(to_clipper(b), cl::ptClip, true);
@@ -79,6 +99,35 @@ double perimeter_of(const Polygon& polygon) {
 }
 
 }  // namespace
+
+namespace overlay {
+namespace {
+
+Ring from_grid_ring(const GridRing& points) {
+  Ring ring;
+  ring.reserve(points.size());
+  for (const GridPoint p : points) ring.push_back({from_grid(p.x), from_grid(p.y)});
+  begin_at_smallest(ring);
+  return ring;
+}
+
+}  // namespace
+
+Polygons to_polygons(const std::vector<GridPolygon>& faces) {
+  Polygons polygons;
+  polygons.reserve(faces.size());
+  for (const GridPolygon& face : faces) {
+    Polygon& polygon = polygons.emplace_back();
+    polygon.outer = from_grid_ring(face.outer);
+    for (const GridRing& hole : face.holes) polygon.holes.push_back(from_grid_ring(hole));
+    std::sort(polygon.holes.begin(), polygon.holes.end(), ring_less);
+  }
+  std::sort(polygons.begin(), polygons.end(),
+            [](const Polygon& a, const Polygon& b) { return ring_less(a.outer, b.outer); });
+  return polygons;
+}
+
+}  // namespace overlay
 
 cl::Path to_clipper(const Ring& ring) {
   cl::Path path;
@@ -153,6 +202,16 @@ Polygons polygons_from_rings(std::vector<Ring> rings, FillRule rule) {
   std::erase_if(rings, [](const Ring& ring) { return ring.size() < 3; });
   for (Ring& ring : rings) begin_at_smallest(ring);
   std::sort(rings.begin(), rings.end(), ring_less);
+  ToGrid grid;
+  if (std::all_of(rings.begin(), rings.end(), [&](const Ring& ring) {
+        return grid.add(ring, {1, 0});
+      })) {
+    const Inside inside = rule == FillRule::kNonZero   ? Inside::kFirstNonZero
+                          : rule == FillRule::kEvenOdd ? Inside::kFirstOdd
+                                                       : Inside::kFirstPositive;
+    if (const auto faces = overlay::overlay(grid.take(), inside))
+      return overlay::to_polygons(*faces);
+  }
   cl::Clipper clipper;
   for (const Ring& ring : rings) clipper.AddPath(to_clipper(ring), cl::ptSubject, true);
   const cl::PolyFillType fill = rule == FillRule::kNonZero   ? cl::pftNonZero
@@ -178,6 +237,12 @@ cl::Path cleaned(const cl::Path& path) {
 
 Polygons offset(const Polygons& polygons, double distance_mm, Join join) {
   if (distance_mm == 0 || polygons.empty()) return polygons;
+  // A mitre is at most twice as long as the distance.
+  ToGrid grid(2 * std::abs(distance_mm));
+  if (join == Join::kMiter && grid.add(polygons, {1, 0}))
+    if (const auto faces = overlay::offset_rings(grid.take(), distance_mm * kGridUnitsPerMm,
+                                                 kCleanMm * kGridUnitsPerMm))
+      return overlay::to_polygons(*faces);
   cl::ClipperOffset offsetter(kMiterLimit, kArcToleranceMm * kGridUnitsPerMm);
   offsetter.AddPaths(to_clipper(polygons), join == Join::kMiter ? cl::jtMiter : cl::jtRound,
                      cl::etClosedPolygon);

@@ -191,7 +191,7 @@ std::string score(const PlannedModel& plan, int jobs, const py::kwargs& printer_
         judge_layers(judge, plan.of->model, plan.chosen, plan.layers, parallel_loop(jobs));
     cell.totals[metric_index("peak_rss_bytes")] = plan.peak_rss_bytes;
     return text_of(plan_document({json_of(plan.contender), plan.of->model.sliced, judge, plan.seed,
-                                  plan.chosen.size(), cell}),
+                                  plan.chosen.size(), &cell}),
                    true);
   });
 }

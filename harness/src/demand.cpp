@@ -5,6 +5,12 @@
 namespace routebench {
 
 Demand demand_of(const Layer& layer, const Task& task) {
+  return demand_of(layer, task,
+                   [&](const Polygons& inside) { return intersect(inside, layer.solid); });
+}
+
+Demand demand_of(const Layer& layer, const Task& task,
+                 const std::function<Polygons(const Polygons& inside)>& skins_in) {
   Demand demand{.outline = layer.polygons, .inside = layer.polygons, .dense = {}, .sparse = {}};
   // One wall at a time, as walls are laid: an offset by many widths at once is far slower and, in
   // narrow places, another region.
@@ -12,12 +18,10 @@ Demand demand_of(const Layer& layer, const Task& task) {
     demand.inside = offset(demand.inside, -task.spacing_mm());
   if (task.density >= 1) {
     demand.dense = demand.inside;
-  } else if (layer.solid.empty()) {
-    demand.sparse = demand.inside;
-  } else {
-    demand.dense = without_thin_parts(intersect(demand.inside, layer.solid), task.line_width_mm);
-    demand.sparse = subtract(demand.inside, demand.dense);
+    return demand;
   }
+  demand.dense = without_thin_parts(skins_in(demand.inside), task.line_width_mm);
+  demand.sparse = subtract(demand.inside, demand.dense);
   return demand;
 }
 

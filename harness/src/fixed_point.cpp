@@ -17,24 +17,9 @@ std::int64_t to_units(double value, int decimals) {
 }
 
 void append_units(std::string& text, std::int64_t units, int decimals) {
-  std::array<char, 32> digits{};
-  std::size_t at = digits.size();
-  // Unsigned, so that the lowest integer has a magnitude too.
-  std::uint64_t rest =
-      units < 0 ? ~static_cast<std::uint64_t>(units) + 1 : static_cast<std::uint64_t>(units);
-  bool significant = false;
-  for (int place = 0; place < decimals; ++place, rest /= 10) {
-    const auto digit = static_cast<char>('0' + rest % 10);
-    significant = significant || digit != '0';
-    if (significant) digits[--at] = digit;
-  }
-  if (significant) digits[--at] = '.';
-  do {
-    digits[--at] = static_cast<char>('0' + rest % 10);
-    rest /= 10;
-  } while (rest != 0);
-  if (units < 0) digits[--at] = '-';
-  text.append(digits.data() + at, digits.size() - at);
+  std::array<char, kLongestNumber> number{};
+  const char* end = put_units(number.data(), units, decimals);
+  text.append(number.data(), static_cast<std::size_t>(end - number.data()));
 }
 
 }  // namespace routebench

@@ -2,6 +2,9 @@
 /// Decimal numbers as text through integers: several times faster than printing floating point,
 /// and there is no "-0".
 
+#include <array>
+#include <charconv>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 
@@ -10,11 +13,37 @@ namespace routebench {
 /// Decimals at which every coordinate of the grid (2^-20 mm) keeps a text of its own.
 inline constexpr int kGridDecimals = 7;
 
+/// Room that put_units needs at most.
+inline constexpr std::size_t kLongestNumber = 24;
+
 /// Whole multiples of 10^-decimals nearest to a value. Takes decimals from 0 to 9 and a value whose
 /// result fits.
 [[nodiscard]] std::int64_t to_units(double value, int decimals);
 
-/// Appends units x 10^-decimals without trailing zeros: 12.5, -0.04, 3.
+/// Writes units x 10^-decimals without trailing zeros: 12.5, -0.04, 3. Takes decimals from 0 to 9;
+/// fastest for a constant. Returns the end of what was written.
+inline char* put_units(char* at, std::int64_t units, int decimals) {
+  constexpr std::array<std::uint64_t, 10> kPowers = {
+      1, 10, 100, 1000, 10000, 100000, 1000000, 10000000, 100000000, 1000000000};
+  // Unsigned, so that the lowest integer has a magnitude too.
+  auto rest = static_cast<std::uint64_t>(units);
+  if (units < 0) {
+    *at++ = '-';
+    rest = ~rest + 1;
+  }
+  const std::uint64_t power = kPowers[static_cast<std::size_t>(decimals)];
+  at = std::to_chars(at, at + kLongestNumber, rest / power).ptr;
+  auto fraction = static_cast<std::uint32_t>(rest % power);
+  if (fraction == 0) return at;
+  *at++ = '.';
+  for (int place = decimals; place > 0; --place, fraction /= 10)
+    at[place - 1] = static_cast<char>('0' + fraction % 10);
+  at += decimals;
+  while (*(at - 1) == '0') --at;
+  return at;
+}
+
+/// Appends the same to a text.
 void append_units(std::string& text, std::int64_t units, int decimals);
 
 /// Appends a value rounded to decimals, without trailing zeros.

@@ -35,16 +35,17 @@ Json layer_document(const Layer& layer) {
 }  // namespace
 
 Json plan_document(const PlanResult& result) {
+  const JudgedCell* const cell = result.cell;
   return {{"model", result.model.spec},
           {"contender", result.contender},
           {"task", json_of(result.judge.task())},
           {"printer", json_of(result.judge.printer())},
           {"seed", result.seed ? Json(*result.seed) : Json(nullptr)},
-          {"outcome", to_string(result.cell.verdict.outcome)},
-          {"reason", result.cell.verdict.reason},
+          {"outcome", cell ? Json(to_string(cell->verdict.outcome)) : Json(nullptr)},
+          {"reason", cell ? Json(cell->verdict.reason) : Json(nullptr)},
           {"layers", result.layers},
-          {"totals", json_of(result.cell.totals)},
-          {"per_layer", layer_documents(result.cell.layers)},
+          {"totals", cell ? json_of(cell->totals) : Json(nullptr)},
+          {"per_layer", cell ? layer_documents(cell->layers) : Json(nullptr)},
           {"mesh", mesh_of(result.model)},
           {"warnings", result.model.warnings}};
 }

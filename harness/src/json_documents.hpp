@@ -22,8 +22,9 @@ struct PlanResult {
   const Judge& judge;
   std::optional<std::uint64_t> seed;  ///< nothing if nobody has drawn lots
   std::size_t layers;                 ///< that were to be planned
-  const JudgedCell& cell;
+  const JudgedCell* cell;             ///< nullptr: not judged
 };
+/// What is not judged has neither outcome nor scores: they are null.
 [[nodiscard]] Json plan_document(const PlanResult& result);
 
 /// What `score` has done, for its document.

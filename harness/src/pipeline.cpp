@@ -37,16 +37,23 @@ void require_task_height(const std::string& file, const std::vector<Layer>& laye
   }
 }
 
-/// Sets Layer::solid by the task's rules. Only layers that were cut from a mesh have one.
-void mark_solid(std::vector<Layer>& layers, const Task& task, const Mesh* mesh,
+void require_no_facets_wanted(const std::string& layer_file, const Task& task) {
+  if (task.skin_rule != SkinRule::kDifference)
+    throw Error(ErrorKind::kBadInput,
+                layer_file + ": a file of layers has no facets; skin_rule must be difference");
+}
+
+/// Sets Layer::solid by the task's rules: with skins, or only where a whole layer is dense. Only
+/// layers that were cut from a mesh have facets.
+void mark_solid(std::vector<Layer>& layers, const Task& task, const Mesh* mesh, bool with_skins,
                 const ParallelFor& parallel_for) {
   std::vector<bool> dense(layers.size(), false);
-  if (task.skin_rule == SkinRule::kDifference)
-    find_solid(layers, task.skin_layers, parallel_for);
-  else
+  if (task.skin_rule != SkinRule::kDifference && mesh != nullptr)
     dense = layers_with_flat_facets(
         *mesh, task.skin_rule == SkinRule::kSlope ? FlatRule::kSlope : FlatRule::kNear,
         task.layer_height_mm, layers.size());
+  else if (with_skins)
+    find_solid(layers, task.skin_layers, parallel_for);
   for (std::size_t i = 0; i < layers.size(); ++i)
     if (dense[i] || layers[i].z_mm < task.base_mm) layers[i].solid = layers[i].polygons;
 }
@@ -69,20 +76,18 @@ SlicedModel slice_mesh_model(const std::string& spec, const Task& task,
                          slices.report.warnings.end());
   sliced.report = std::move(slices.report);
   sliced.layers = std::move(slices.layers);
-  if (options.find_skins) mark_solid(sliced.layers, task, &model.mesh, parallel_for);
+  mark_solid(sliced.layers, task, &model.mesh, options.find_skins, parallel_for);
   return sliced;
 }
 
 SlicedModel read_layer_file(const std::string& spec, const Task& task,
                             const SliceModelOptions& options, const ParallelFor& parallel_for) {
-  if (options.find_skins && task.skin_rule != SkinRule::kDifference)
-    throw Error(ErrorKind::kBadInput,
-                spec + ": a file of layers has no facets; skin_rule must be difference");
+  if (options.find_skins) require_no_facets_wanted(spec, task);
   SlicedModel sliced;
   sliced.layers = read_wkt(spec, task.layer_height_mm);
   require_task_height(spec, sliced.layers, task);
   for (const Layer& layer : sliced.layers) sliced.report.repaired_layers += layer.repaired ? 1 : 0;
-  if (options.find_skins) mark_solid(sliced.layers, task, nullptr, parallel_for);
+  mark_solid(sliced.layers, task, nullptr, options.find_skins, parallel_for);
   return sliced;
 }
 
@@ -109,13 +114,28 @@ SlicedModel slice_model(const std::string& spec, const Task& task, const SliceMo
   return sliced;
 }
 
+std::vector<Demand> demands_of(const SlicedModel& sliced, const Task& task,
+                               const ParallelFor& parallel_for) {
+  const std::vector<Layer>& layers = sliced.layers;
+  const bool by_difference = task.skin_rule == SkinRule::kDifference && task.density < 1;
+  const SkinFinder skins(layers, by_difference ? task.skin_layers : 0, parallel_for);
+  std::vector<Demand> demands(layers.size());
+  parallel_for(layers.size(), [&](std::size_t i) {
+    const bool is_dense = !layers[i].solid.empty();
+    demands[i] = demand_of(layers[i], task, [&](const Polygons& inside) {
+      return is_dense ? inside : skins.skins_in(inside, i);
+    });
+  });
+  return demands;
+}
+
 PreparedModel prepare_model(const std::string& spec, const Task& task,
                             const SliceModelOptions& options, const ParallelFor& parallel_for) {
-  PreparedModel model{slice_model(spec, task, options, parallel_for), {}};
-  const std::vector<Layer>& layers = model.sliced.layers;
-  model.demands.resize(layers.size());
-  parallel_for(layers.size(),
-               [&](std::size_t i) { model.demands[i] = demand_of(layers[i], task); });
+  if (is_layer_file(spec)) require_no_facets_wanted(spec, task);
+  SliceModelOptions without_skins = options;
+  without_skins.find_skins = false;
+  PreparedModel model{slice_model(spec, task, without_skins, parallel_for), {}};
+  model.demands = demands_of(model.sliced, task, parallel_for);
   return model;
 }
 

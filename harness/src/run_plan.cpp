@@ -73,10 +73,7 @@ PreparedModel prepared_model(const ConfiguredModel& model, const Task& task,
   for (const auto& [other, ready] : before) {
     if (!sliced_alike(other, task)) continue;
     PreparedModel prepared{ready->prepared.sliced, {}};
-    const std::vector<Layer>& layers = prepared.sliced.layers;
-    prepared.demands.resize(layers.size());
-    parallel_for(layers.size(),
-                 [&](std::size_t i) { prepared.demands[i] = demand_of(layers[i], task); });
+    prepared.demands = demands_of(prepared.sliced, task, parallel_for);
     return prepared;
   }
   return prepare_model(model.source, task, options, parallel_for);

@@ -164,5 +164,30 @@ TEST(FlatFacets, AreThoseThatRiseByLessThanAFifth) {
   EXPECT_TRUE(places(layers_with_flat_facets(ramp(0.11), FlatRule::kNear, 1, 10)).empty());
 }
 
+TEST(SkinFinder, FindsInRegionsWhatTheDefinitionSays) {
+  for (const std::uint64_t seed : {1u, 2u}) {
+    std::vector<Layer> layers = random_stack(seed, 12);
+    // Some neighbours are alike, so that regions lie clear of all air.
+    for (const std::size_t i : {4u, 5u, 6u, 7u}) layers[i].polygons = layers[3].polygons;
+    for (const int skin_layers : {0, 1, 2, 20}) {
+      const SkinFinder finder(layers, skin_layers);
+      for (std::size_t i = 0; i < layers.size(); ++i) {
+        const Polygons region = offset(layers[i].polygons, -0.3);
+        const Polygons expected = intersect(region, solid_by_definition(layers, i, skin_layers));
+        EXPECT_LT(difference_mm2(finder.skins_in(region, i), expected), 1e-3)
+            << "layer " << i << ", " << skin_layers << " skin layers";
+      }
+    }
+  }
+}
+
+TEST(SkinFinder, SeesAHoleOfANeighbourInTheMiddleOfARegion) {
+  std::vector<Layer> layers = stack_of({square(10), square(10), square(10)});
+  layers[2].polygons[0].holes = {{{-1, -1}, {-1, 1}, {1, 1}, {1, -1}}};
+  const SkinFinder finder(layers, 1);
+  EXPECT_NEAR(area_mm2(finder.skins_in(square(8), 1)), 4, 1e-9);
+  EXPECT_THROW(SkinFinder(layers, -1), Error);
+}
+
 }  // namespace
 }  // namespace routebench

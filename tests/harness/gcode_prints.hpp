@@ -19,13 +19,13 @@ struct Print {
   std::vector<PlannedLayer> planned;
 };
 
-/// Strokes of 2 to 40 points, from 0.001 mm to several mm a step, on three layers of one plate.
-inline Print random_print(std::uint64_t seed) {
+/// Strokes of 2 to 40 points, from 0.001 mm to several mm a step, on some layers of one plate.
+inline Print random_print(std::uint64_t seed, int layers = 3) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> place(-40, 40), log_step(-3, 1), angle(0, 6.283);
   std::uniform_int_distribution<int> count(2, 40), kind(0, 2);
   Print print;
-  for (int index = 0; index < 3; ++index) {
+  for (int index = 0; index < layers; ++index) {
     print.layers.push_back({.index = index,
                             .z_mm = 0.2 * index + 0.1,
                             .height_mm = 0.2,
@@ -51,8 +51,10 @@ inline Print random_print(std::uint64_t seed) {
 inline std::string gcode_of(const Print& print, const Task& task, const Printer& printer) {
   std::ostringstream out;
   GcodeWriter writer(out, task, printer, {});
+  std::vector<RoutedLayer> layers;
   for (std::size_t i = 0; i < print.layers.size(); ++i)
-    writer.write_layer(print.layers[i], print.planned[i]);
+    layers.push_back({&print.layers[i], &print.planned[i]});
+  writer.write_layers(layers);
   writer.finish();
   return out.str();
 }

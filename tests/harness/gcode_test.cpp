@@ -6,16 +6,21 @@
 #include <limits>
 #include <numbers>
 #include <random>
+#include <span>
 #include <sstream>
 
 #include "fixed_point.hpp"
+#include "gcode/near_boundary.hpp"
 #include "gcode_prints.hpp"
 #include "gcode_reader.hpp"
 #include "random_polygons.hpp"
+#include "routebench/geometry/edge_grid.hpp"
 #include "routebench/geometry/error.hpp"
 #include "routebench/geometry/grid.hpp"
+#include "routebench/geometry/region.hpp"
 #include "routebench/geometry/vec.hpp"
 #include "routebench/harness/gcode_writer.hpp"
+#include "routebench/harness/parallel.hpp"
 
 namespace routebench {
 namespace {
@@ -245,6 +250,52 @@ TEST(Gcode, TheFanRunsAboveTheFirstLayer) {
   EXPECT_LT(fan, text.find("\nG1", second));
   // A print of one layer is never cooled.
   EXPECT_EQ(gcode_of(two_strokes({5, 1}, {5, 2}), {}, {}).find("M106"), text.npos);
+}
+
+TEST(Gcode, PointsNearABoundaryAreThoseThatAGridOfEdgesFinds) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    const Polygons polygons = test::random_polygons(seed, 8, 30);
+    const EdgeGrid edges(polygons);
+    const Box2 box = bounding_box(polygons);
+    std::mt19937_64 random(seed);
+    std::uniform_real_distribution<double> x(box.lower.x - 1, box.upper.x + 1);
+    std::uniform_real_distribution<double> y(box.lower.y - 1, box.upper.y + 1);
+    std::uniform_real_distribution<double> limit(0.01, 1);
+    std::vector<NearQuery> queries;
+    for (int i = 0; i < 500; ++i) queries.push_back({{x(random), y(random)}, limit(random)});
+    const std::vector<bool> near = near_boundary(polygons, queries);
+    for (std::size_t i = 0; i < queries.size(); ++i)
+      EXPECT_EQ(near[i],
+                edges.distance_to_edge_mm(queries[i].point, queries[i].limit_mm) != std::nullopt);
+    EXPECT_TRUE(std::ranges::find(near, true) != near.end());
+    EXPECT_TRUE(std::ranges::find(near, false) != near.end());
+  }
+}
+
+TEST(Gcode, BytesDependNeitherOnTheLoopNorOnTheCalls) {
+  const ParallelFor backwards = [](std::size_t count, const auto& body) {
+    for (std::size_t i = count; i-- > 0;) body(i);
+  };
+  for (const char* flavour : {"marlin", "ultigcode"}) {
+    Print print = random_print(5, 150);
+    print.planned[3] = {};  // a layer without strokes
+    std::vector<RoutedLayer> layers;
+    for (std::size_t i = 0; i < print.layers.size(); ++i)
+      layers.push_back({&print.layers[i], &print.planned[i]});
+    const auto text = [&](std::size_t layers_a_call, const ParallelFor& parallel_for) {
+      std::ostringstream out;
+      GcodeWriter writer(out, {}, printer_of(flavour), {});
+      const std::span<const RoutedLayer> all = layers;
+      for (std::size_t i = 0; i < all.size(); i += layers_a_call)
+        writer.write_layers(all.subspan(i, std::min(layers_a_call, all.size() - i)), parallel_for);
+      writer.finish();
+      return std::move(out).str();
+    };
+    const std::string serial = text(layers.size(), serial_for);
+    EXPECT_TRUE(serial == text(1, serial_for)) << flavour;
+    EXPECT_TRUE(serial == text(layers.size(), backwards)) << flavour;
+    EXPECT_TRUE(serial == text(100, parallel_loop(3))) << flavour;
+  }
 }
 
 TEST(Gcode, TheEndLiftsTheNozzleAndStopsTheMotors) {

@@ -18,6 +18,7 @@
 #include "judge/outline.hpp"
 #include "judge/run.hpp"
 #include "judge/sample_grid.hpp"
+#include "judge/samples_left.hpp"
 #include "random_polygons.hpp"
 #include "routebench/geometry/grid.hpp"
 #include "routebench/geometry/vec.hpp"
@@ -178,11 +179,12 @@ TEST(JudgeOracle, CapsuleRowsHoldExactlyThePointsInReach) {
     if (round % 5 == 4) b = a + 1e-9 * (b - a);
     const double radius = size(random);
     std::vector<judging::Span> rows(40);
-    std::vector<judging::Span> starts(40);
+    std::size_t next = 0;
     judging::visit_capsule_rows(a, b, radius, rows.size(),
-                                [&](std::size_t row, judging::Span span, judging::Span start) {
-                                  rows[row] = span;
-                                  starts[row] = start;
+                                [&](std::size_t row, judging::Span span) {
+                                  EXPECT_GE(row, next);  // each once, upwards
+                                  next = row + 1;
+                                  rows.at(row) = span;
                                 });
     for (std::size_t row = 0; row < rows.size(); ++row)
       for (int x = -20; x < 60; ++x) {
@@ -192,9 +194,37 @@ TEST(JudgeOracle, CapsuleRowsHoldExactlyThePointsInReach) {
           EXPECT_EQ(rows[row].left <= x && x <= rows[row].right, away < radius);
         }
         if (std::abs(distance(p, a) - radius) > 1e-6) {
-          EXPECT_EQ(starts[row].left <= x && x <= starts[row].right, distance(p, a) < radius);
+          const judging::Span disc = judging::disc_row(a.x, p.y - a.y, radius);
+          EXPECT_EQ(disc.left <= x && x <= disc.right, distance(p, a) < radius);
         }
       }
+  }
+}
+
+TEST(JudgeOracle, CapsulesTakeAwayWhatTheyWouldAdd) {
+  // With a look now and then at what is left, which must not be trusted for more than it says.
+  const Polygons polygons = test::random_polygons(3, 6, 10);
+  const judging::SampleGrid grid(polygons, 0.5, 0.05, 1e6);
+  const judging::BitPlane all(grid, polygons);
+  std::mt19937_64 random(7);
+  const Box2 box = bounding_box(polygons);
+  std::uniform_real_distribution<double> x(box.lower.x, box.upper.x);
+  std::uniform_real_distribution<double> y(box.lower.y, box.upper.y);
+  constexpr int kEnoughForAll = 20000;
+  for (const int count : {1, 300, kEnoughForAll}) {
+    judging::BitPlane added(grid);
+    judging::SamplesLeft left(all);
+    for (int i = 0; i < count; ++i) {
+      const Point2 a{x(random), y(random)};
+      const Point2 b = lerp(a, {x(random), y(random)}, 0.05);
+      judging::visit_capsule_rows(
+          grid.to_steps(a), grid.to_steps(b), grid.to_steps(0.4), grid.rows(),
+          [&](std::size_t row, judging::Span span) { added.add(row, span.left, span.right); });
+      left.remove(a, b, 0.4);
+    }
+    using Word = judging::BitPlane::Word;
+    EXPECT_EQ(left.count(), all.count([](Word p, Word q) { return p & ~q; }, added)) << count;
+    EXPECT_EQ(left.count() == 0, count == kEnoughForAll);
   }
 }
 

@@ -130,6 +130,23 @@ TEST_F(PlanCommand, LayersOfAFileScoreLikeTheModelTheyCameFrom) {
   EXPECT_EQ(of_file["per_layer"], of_mesh["per_layer"]);
 }
 
+TEST_F(PlanCommand, WithoutJudgingTheRoutesAreTheSameAndNothingIsClaimed) {
+  const std::string model = "shape:hotend?size=15";
+  const std::string judged = in_folder("judged.gcode"), planned = in_folder("planned.gcode");
+  ASSERT_EQ(plan(model, {"--gcode", judged, "--jobs", "1"}).exit_code, 0);
+  const ProgramRun run =
+      plan(model, {"--gcode", planned, "--no-judge", "--jobs", "3", "--json", "-"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(test::content_of(judged), test::content_of(planned));
+  const json document = run.json();
+  for (const char* key : {"outcome", "reason", "totals", "per_layer"})
+    EXPECT_TRUE(document[key].is_null()) << key;
+  EXPECT_GT(document["layers"], 0);
+  const ProgramRun table = plan(model, {"--no-judge"});
+  EXPECT_NE(table.out.find("outcome    planned, not judged\n"), std::string::npos);
+  EXPECT_EQ(table.out.find("Travel"), std::string::npos);
+}
+
 TEST_F(PlanCommand, ChosenLayersAreThoseOfTheWholeModel) {
   const json all = without_times(plan(kModel, {"--json", "-"}).json());
   const json some = without_times(plan(kModel, {"--json", "-", "--layers", "10..12,3"}).json());

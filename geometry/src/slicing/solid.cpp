@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <utility>
 
+#include "overlay/ring_index.hpp"
+#include "overlay/to_grid.hpp"
 #include "routebench/geometry/error.hpp"
 #include "routebench/geometry/region.hpp"
 #include "slicing/slivers.hpp"
@@ -47,14 +50,68 @@ class CommonParts {
   std::vector<Polygons> to_block_end_;
 };
 
-}  // namespace
-
-void find_solid(std::vector<Layer>& layers, int skin_layers, const ParallelFor& parallel_for) {
+std::size_t checked_reach(int skin_layers) {
   if (skin_layers < 0)
     throw Error(ErrorKind::kBadUsage,
                 "skin_layers = " + std::to_string(skin_layers) + ": must be 0 or more");
+  return static_cast<std::size_t>(skin_layers);
+}
+
+}  // namespace
+
+struct SkinFinder::Impl {
+  /// What overlays need of one layer; nothing if it is empty or does not fit on their grid.
+  using Index = std::optional<overlay::RingIndex>;
+
+  const std::vector<Layer>& layers;
+  std::size_t reach;
+  std::vector<Index> indices;
+
+  static Index index_of(const Polygons& polygons) {
+    overlay::ToGrid grid;
+    if (polygons.empty() || !grid.add(polygons, {1, 0})) return std::nullopt;
+    overlay::GridRings rings = grid.take();
+    if (rings.rings() == 0) return std::nullopt;
+    return overlay::RingIndex(std::move(rings));
+  }
+};
+
+SkinFinder::SkinFinder(const std::vector<Layer>& layers, int skin_layers,
+                       const ParallelFor& parallel_for)
+    : impl_(std::make_unique<Impl>(Impl{layers, checked_reach(skin_layers), {}})) {
+  impl_->indices.resize(layers.size());
+  if (impl_->reach == 0) return;
+  parallel_for(layers.size(),
+               [&](std::size_t i) { impl_->indices[i] = Impl::index_of(layers[i].polygons); });
+}
+
+SkinFinder::~SkinFinder() = default;
+SkinFinder::SkinFinder(SkinFinder&&) noexcept = default;
+SkinFinder& SkinFinder::operator=(SkinFinder&&) noexcept = default;
+
+Polygons SkinFinder::skins_in(const Polygons& region, std::size_t layer) const {
+  const std::size_t reach = impl_->reach, count = impl_->layers.size();
+  if (reach == 0 || region.empty()) return {};
+  if (layer < reach || layer + reach >= count) return region;
+  Impl::Index own = Impl::index_of(region);
+  Polygons common = region;
+  const auto cut_by = [&](std::size_t other) {
+    const Impl::Index& index = impl_->indices[other];
+    if (common.empty() || (own && index && index->holds_all_of(*own))) return;
+    common = intersect(common, impl_->layers[other].polygons);
+    own = Impl::index_of(common);
+  };
+  // The farthest first: what they leave is mostly held by the nearer ones.
+  for (std::size_t distance = reach; distance > 0; --distance) {
+    cut_by(layer - distance);
+    cut_by(layer + distance);
+  }
+  return rest(region, common);
+}
+
+void find_solid(std::vector<Layer>& layers, int skin_layers, const ParallelFor& parallel_for) {
   const std::size_t count = layers.size();
-  const std::size_t reach = std::min(static_cast<std::size_t>(skin_layers), count);
+  const std::size_t reach = std::min(checked_reach(skin_layers), count);
   if (reach == 0 || 2 * reach >= count) {
     for (Layer& layer : layers) layer.solid = reach == 0 ? Polygons{} : layer.polygons;
     return;

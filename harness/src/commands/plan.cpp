@@ -42,6 +42,7 @@ struct PlanArguments {
   std::uint64_t seed = 1;
   int jobs = 0;
   bool repair = false;
+  bool no_judge = false;
 };
 
 ContenderSpec contender_of(const PlanArguments& arguments, const Registry& registry) {
@@ -101,10 +102,11 @@ class Plan {
                            parallel_for_);
     print_warnings(arguments_.model, model_.sliced.warnings);
     chosen_ = select_layers(arguments_.layers, model_.sliced.layers);
-    plan_and_judge();
+    const bool planned = plan();
+    if (planned && !arguments_.no_judge) judge();
     OutputSet outputs;
-    if (has_route() && !arguments_.gcode.empty()) add_gcode(outputs);
-    if (has_route() && !arguments_.svg.empty()) add_pictures(outputs);
+    if (planned && !arguments_.gcode.empty()) add_gcode(outputs);
+    if (planned && !arguments_.svg.empty()) add_pictures(outputs);
     if (!arguments_.json.empty() && arguments_.json != "-")
       write_json(outputs, arguments_.json, document());
     outputs.commit();
@@ -113,37 +115,48 @@ class Plan {
     } else {
       print_table(std::cout);
     }
-    return cell_.verdict.outcome == Outcome::kValid ? 0 : kExitNotValid;
+    return !cell_ || cell_->verdict.outcome == Outcome::kValid ? 0 : kExitNotValid;
   }
 
  private:
-  void plan_and_judge() {
+  /// False if a planner has failed.
+  bool plan() {
     if (const auto* print = std::get_if<GcodePrint>(&*source_)) {
-      PlacedPrint placed =
+      placed_ =
           place_print(*print, model_, chosen_, offset_, judge_.task().line_width_mm, parallel_for_);
-      cell_ = judge_print(judge_, model_, chosen_, placed, parallel_for_);
-      planned_ = std::move(placed.layers);
+      planned_ = placed_->layers;
       print_warnings(arguments_.from_gcode, print->warnings);
-      return;
+      return true;
     }
+    Outcome outcome = Outcome::kFailed;
+    std::string reason;
     try {
       planned_ = plan_layers(std::get<Contender>(*source_), model_, chosen_, judge_.task(),
                              arguments_.seed, {}, parallel_for_);
     } catch (const PlannerDied& death) {
-      cell_.verdict = {Outcome::kCrashed, death.what()};
+      outcome = Outcome::kCrashed;
+      reason = death.what();
     } catch (const Error& error) {
       // A planner that breaks its contract is a result like any other.
-      cell_.verdict = {Outcome::kFailed, error.what()};
+      reason = error.what();
     }
-    if (!has_route()) {
-      std::cerr << "routebench: " << arguments_.model << ": " << cell_.verdict.reason << '\n';
+    if (planned_.size() != chosen_.size()) {
+      std::cerr << "routebench: " << arguments_.model << ": " << reason << '\n';
+      cell_ = {.layers = {}, .totals = {}, .verdict = {outcome, reason}};
+      return false;
+    }
+    return true;
+  }
+
+  void judge() {
+    if (placed_) {
+      cell_ = judge_print(judge_, model_, chosen_, *placed_, parallel_for_);
       return;
     }
     cell_ = judge_layers(judge_, model_, chosen_, planned_, parallel_for_);
-    cell_.totals[metric_index("peak_rss_bytes")] = std::get<Contender>(*source_).peak_rss_bytes();
+    cell_->totals[metric_index("peak_rss_bytes")] = std::get<Contender>(*source_).peak_rss_bytes();
   }
 
-  [[nodiscard]] bool has_route() const { return planned_.size() == chosen_.size(); }
   [[nodiscard]] Json source() const {
     const auto* contender = std::get_if<Contender>(&*source_);
     return contender != nullptr ? json_of(*contender) : Json{{"gcode", arguments_.from_gcode}};
@@ -153,7 +166,7 @@ class Plan {
     const bool planned = std::holds_alternative<Contender>(*source_);
     return plan_document({source(), model_.sliced, judge_,
                           planned ? std::optional(arguments_.seed) : std::nullopt, chosen_.size(),
-                          cell_});
+                          cell_ ? &*cell_ : nullptr});
   }
 
   void add_gcode(OutputSet& outputs) const {
@@ -161,8 +174,10 @@ class Plan {
       const std::vector<std::string> comments = {"model = " + arguments_.model,
                                                  "contender = " + text_of(source(), true)};
       GcodeWriter writer(out, judge_.task(), judge_.printer(), comments);
+      std::vector<RoutedLayer> layers;
       for (std::size_t i = 0; i < chosen_.size(); ++i)
-        writer.write_layer(model_.sliced.layers[chosen_[i]], planned_[i]);
+        layers.push_back({&model_.sliced.layers[chosen_[i]], &planned_[i]});
+      writer.write_layers(layers, parallel_for_);
       writer.finish();
     });
   }
@@ -188,10 +203,14 @@ class Plan {
           << to_string(contender->spec().order);
     else
       out << "\nstrokes    of " << arguments_.from_gcode;
-    out << "\noutcome    " << to_string(cell_.verdict.outcome);
-    if (!cell_.verdict.reason.empty()) out << ": " << cell_.verdict.reason;
+    out << "\noutcome    " << (cell_ ? to_string(cell_->verdict.outcome) : "planned, not judged");
+    if (!cell_) {
+      out << '\n';
+      return;
+    }
+    if (!cell_->verdict.reason.empty()) out << ": " << cell_->verdict.reason;
     out << '\n';
-    const std::vector<Row> rows = rows_of(cell_.totals);
+    const std::vector<Row> rows = rows_of(cell_->totals);
     if (!rows.empty()) out << '\n';
     print_rows(out, rows);
   }
@@ -204,8 +223,9 @@ class Plan {
   std::optional<StrokeSource> source_;
   PreparedModel model_;
   std::vector<std::size_t> chosen_;
+  std::optional<PlacedPrint> placed_;  // if the strokes are those of a file
   std::vector<PlannedLayer> planned_;
-  JudgedCell cell_;
+  std::optional<JudgedCell> cell_;  // nothing if it is not to be judged
 };
 
 }  // namespace
@@ -241,6 +261,9 @@ void add_plan_command(CLI::App& app, int& exit_code) {
       .add_option("--json", arguments->json,
                   "Write every score of every layer; - is the standard output, alone")
       ->type_name("FILE|-");
+  command.add_flag("--no-judge", arguments->no_judge,
+                   "Only plan and write: no outcome and no scores, so the exit code tells nothing "
+                   "of the routes' worth");
   add_plugin_option(command, arguments->plugins);
   add_jobs_option(command, arguments->jobs,
                   "; planning times by the clock on the wall are to be trusted with 1 only");

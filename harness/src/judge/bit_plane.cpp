@@ -6,7 +6,7 @@
 namespace routebench::judging {
 
 BitPlane::BitPlane(const SampleGrid& grid, const Polygons& polygons) : BitPlane(grid) {
-  if (words_.empty()) return;
+  if (words_.empty() || polygons.empty()) return;
   // Every edge flips its rows from where it crosses them onwards: what is flipped an odd number of
   // times is inside. The flips are kept as one bit each and summed along the rows at the end.
   const auto add_edge = [this](Point2 a, Point2 b) {

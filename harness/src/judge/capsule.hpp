@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <utility>
 
 #include "routebench/geometry/types.hpp"
 #include "routebench/geometry/vec.hpp"
@@ -17,11 +18,6 @@ struct Span {
   double right = -std::numeric_limits<double>::infinity();
 
   [[nodiscard]] bool empty() const noexcept { return left > right; }
-  /// Widens this to hold another; exact where the two make up one span.
-  void widen(Span other) noexcept {
-    left = std::min(left, other.left);
-    right = std::max(right, other.right);
-  }
 };
 
 /// The row at height dy over the centre of a disc.
@@ -32,62 +28,88 @@ struct Span {
   return {centre_x - half, centre_x + half};
 }
 
-/// The rows of the rectangle between the two discs of a capsule: |cross| <= radius and
-/// 0 <= dot <= length are two ranges of x, both linear in the height.
-class RectangleRows {
+/// The boundary of a capsule by rows. A capsule is convex, hence one span a row, and upwards each
+/// of the span's two ends runs along an arc of the lower disc, a straight side, and an arc of the
+/// upper disc.
+class CapsuleRows {
  public:
-  RectangleRows(Point2 a, Point2 b, double radius) noexcept : a_(a) {
-    const double length = distance(a, b);
-    const Point2 along = length > 0 ? (1 / length) * (b - a) : Point2{1, 0};
-    if (along.y != 0) {
-      side_slope_ = along.x / along.y;
-      half_width_ = radius / std::abs(along.y);
+  CapsuleRows(Point2 a, Point2 b, double radius) noexcept
+      : low_(a.y <= b.y ? a : b), high_(a.y <= b.y ? b : a), square_(radius * radius) {
+    const Point2 run = high_ - low_;
+    const double length = distance(low_, high_);
+    double rise = 0;  // of the normal to the left, times the radius
+    if (run.y > kLevel) {
+      slope_ = run.x / run.y;
+      half_width_ = radius * length / run.y;
+      rise = radius * run.x / length;
+    } else if (length > 0) {  // level: the arcs meet at the sides
+      rise = run.x > 0 ? radius : -radius;
     }
-    if (along.x != 0) {
-      end_slope_ = -along.y / along.x;
-      first_end_ = std::min(0.0, length / along.x);
-      last_end_ = std::max(0.0, length / along.x);
-    } else {
-      lowest_ = std::min(0.0, b.y - a.y);
-      highest_ = std::max(0.0, b.y - a.y);
-    }
+    left_side_ = {low_.y + rise, high_.y + rise};
+    right_side_ = {low_.y - rise, high_.y - rise};
   }
 
-  [[nodiscard]] Span at(double dy) const noexcept {
-    if (dy < lowest_ || dy > highest_) return {};
-    return {a_.x + std::max(side_slope_ * dy - half_width_, end_slope_ * dy + first_end_),
-            a_.x + std::min(side_slope_ * dy + half_width_, end_slope_ * dy + last_end_)};
+  /// Rows at which both ends are on straight sides.
+  [[nodiscard]] double first_between() const noexcept {
+    return std::max(left_side_.begin, right_side_.begin);
+  }
+  [[nodiscard]] double last_between() const noexcept {
+    return std::min(left_side_.end, right_side_.end);
+  }
+  /// The row at such a height.
+  [[nodiscard]] Span between(double y) const noexcept {
+    const double middle = low_.x + slope_ * (y - low_.y);
+    return {middle - half_width_, middle + half_width_};
+  }
+  /// The row at any height that the capsule meets.
+  [[nodiscard]] Span at(double y) const noexcept {
+    const auto end = [this, y](double sign, const Side& side) {
+      if (y < side.begin) return low_.x + sign * half_chord(y - low_.y);
+      if (y > side.end) return high_.x + sign * half_chord(y - high_.y);
+      return low_.x + slope_ * (y - low_.y) + sign * half_width_;
+    };
+    return {end(-1, left_side_), end(1, right_side_)};
   }
 
  private:
-  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  /// Lower than this a segment is taken as level: no row but one is met by its sides.
+  static constexpr double kLevel = 1e-9;
 
-  Point2 a_;
-  double side_slope_ = 0;  // of the long sides, x over y
-  double half_width_ = kInfinity;
-  double end_slope_ = 0;  // of the short sides
-  double first_end_ = -kInfinity;
-  double last_end_ = kInfinity;
-  double lowest_ = -kInfinity;
-  double highest_ = kInfinity;
+  struct Side {
+    double begin = 0;  ///< height at which it leaves the lower disc
+    double end = 0;    ///< and that at which it reaches the upper one
+  };
+
+  /// Half the width of a disc's row.
+  [[nodiscard]] double half_chord(double dy) const noexcept {
+    return std::sqrt(std::max(square_ - dy * dy, 0.0));  // the tip may be beyond by rounding
+  }
+
+  Point2 low_;
+  Point2 high_;
+  double square_;
+  double slope_ = 0;
+  double half_width_ = 0;
+  Side left_side_;
+  Side right_side_;
 };
 
-/// Calls visit(row, span of the capsule, span of the disc round a) for every row in [0, row_count)
-/// that the capsule round segment ab meets. All lengths are in steps. A capsule is convex, hence
-/// one span a row: from its two discs and the rectangle between them.
+/// Calls visit(row, span) for every row in [0, row_count) that the capsule round segment ab meets.
+/// All lengths are in steps.
 template <typename Visit>
 void visit_capsule_rows(Point2 a, Point2 b, double radius, std::size_t row_count, Visit&& visit) {
-  const RectangleRows rectangle(a, b, radius);
   const double first = std::max(std::ceil(std::min(a.y, b.y) - radius), 0.0);
   const double last =
       std::min(std::floor(std::max(a.y, b.y) + radius), static_cast<double>(row_count) - 1);
-  for (double y = first; y <= last; y += 1) {
-    const Span start = disc_row(a.x, y - a.y, radius);
-    Span row = start;
-    row.widen(disc_row(b.x, y - b.y, radius));
-    if (const Span between = rectangle.at(y - a.y); !between.empty()) row.widen(between);
-    if (!row.empty()) visit(static_cast<std::size_t>(y), row, start);
-  }
+  if (!(first <= last)) return;
+  const CapsuleRows rows(a, b, radius);
+  double y = first;
+  auto row = static_cast<std::size_t>(first);
+  for (const double end = std::min(rows.first_between(), last + 1); y < end; y += 1)
+    visit(row++, rows.at(y));
+  for (const double end = std::min(rows.last_between(), last); y <= end; y += 1)
+    visit(row++, rows.between(y));
+  for (; y <= last; y += 1) visit(row++, rows.at(y));
 }
 
 }  // namespace routebench::judging

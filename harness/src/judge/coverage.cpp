@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <optional>
+#include <utility>
 
 #include "judge/bit_plane.hpp"
 #include "judge/capsule.hpp"
 #include "judge/sample_grid.hpp"
+#include "judge/samples_left.hpp"
 #include "routebench/geometry/region.hpp"
 #include "routebench/geometry/vec.hpp"
 
@@ -20,7 +22,7 @@ void add_capsule(BitPlane& plane, Point2 a, Point2 b, double radius_mm) {
   const SampleGrid& grid = plane.grid();
   visit_capsule_rows(
       grid.to_steps(a), grid.to_steps(b), grid.to_steps(radius_mm), grid.rows(),
-      [&plane](std::size_t row, Span bead, Span) { plane.add(row, bead.left, bead.right); });
+      [&plane](std::size_t row, Span bead) { plane.add(row, bead.left, bead.right); });
 }
 
 /// Adds the passes of a run; see Coverage::doubled. A pass begins in a segment where its bead
@@ -32,8 +34,12 @@ void add_passes(BitPlane& once, BitPlane& twice, const Run& run, const Task& tas
   for (std::size_t i = 0; i < run.widths_mm.size(); ++i) {
     if (run.widths_mm[i] <= 0) continue;
     const bool goes_on = i > 0 || run.loop;
-    const auto add = [&](std::size_t row, Span bead, Span start) {
-      if (!goes_on || start.empty()) {
+    const Point2 from = grid.to_steps(run.points[i]);
+    const double radius = grid.to_steps(task.mean_width_mm(run.widths_mm[i]) / 2);
+    const auto add = [&](std::size_t row, Span bead) {
+      const double dy = static_cast<double>(row) - from.y;
+      const Span start = goes_on && std::abs(dy) <= radius ? disc_row(from.x, dy, radius) : Span{};
+      if (start.empty()) {
         once.add_counting(row, bead.left, bead.right, twice);
         return;
       }
@@ -41,61 +47,74 @@ void add_passes(BitPlane& once, BitPlane& twice, const Run& run, const Task& tas
       once.add_counting(row, bead.left, std::ceil(start.left) - 1, twice);
       once.add_counting(row, std::floor(start.right) + 1, bead.right, twice);
     };
-    visit_capsule_rows(grid.to_steps(run.points[i]), grid.to_steps(run.points[i + 1]),
-                       grid.to_steps(task.mean_width_mm(run.widths_mm[i]) / 2), grid.rows(), add);
+    visit_capsule_rows(from, grid.to_steps(run.points[i + 1]), radius, grid.rows(), add);
   }
 }
 
-/// Adds all points within radius_mm of the beads' centre lines, which may be moved by up to
+/// Takes away all samples within radius_mm of the beads' centre lines, which may be moved by up to
 /// slack_mm: steps of a curve that are shorter are taken together.
-void add_reach(BitPlane& plane, const std::vector<Run>& runs, double radius_mm, double slack_mm) {
-  for (const Run& run : runs) {
-    Point2 from = run.points.front();
-    for (std::size_t i = 0; i < run.widths_mm.size(); ++i) {
-      const Point2 to = run.points[i + 1];
-      if (run.widths_mm[i] <= 0) {
+void remove_reach(SamplesLeft& samples, const std::vector<Run>& runs, double radius_mm,
+                  double slack_mm) {
+  const auto visit_pieces = [&](auto&& visit) {
+    for (const Run& run : runs) {
+      Point2 from = run.points.front();
+      for (std::size_t i = 0; i < run.widths_mm.size(); ++i) {
+        const Point2 to = run.points[i + 1];
+        if (run.widths_mm[i] <= 0) {
+          from = to;
+          continue;
+        }
+        const double length = distance(from, to);
+        const bool last = i + 1 == run.widths_mm.size() || run.widths_mm[i + 1] <= 0;
+        if (!last && length < slack_mm) continue;
+        visit(from, to, length);
         from = to;
-        continue;
       }
-      const bool last = i + 1 == run.widths_mm.size() || run.widths_mm[i + 1] <= 0;
-      if (!last && distance(from, to) < slack_mm) continue;
-      add_capsule(plane, from, to, radius_mm);
-      from = to;
     }
-  }
+  };
+  // Long pieces first: usually they leave nothing for the many short ones.
+  visit_pieces([&](Point2 a, Point2 b, double length_mm) {
+    if (length_mm >= radius_mm) samples.remove(a, b, radius_mm);
+  });
+  samples.look();
+  if (samples.none()) return;
+  visit_pieces([&](Point2 a, Point2 b, double length_mm) {
+    if (length_mm < radius_mm) samples.remove(a, b, radius_mm);
+  });
 }
 
-/// Adds what lies within radius_mm of the polygons' boundary.
-void grow(BitPlane& plane, const Polygons& polygons, double radius_mm) {
-  const auto add_ring = [&](const Ring& ring) {
-    for (std::size_t i = 0; i < ring.size(); ++i)
-      add_capsule(plane, ring[i == 0 ? ring.size() - 1 : i - 1], ring[i], radius_mm);
-  };
-  for (const Polygon& polygon : polygons) {
-    add_ring(polygon.outer);
-    for (const Ring& hole : polygon.holes) add_ring(hole);
-  }
-}
+/// How far a sparse line reaches.
+double reach_mm(const Task& task) { return task.spacing_mm() / task.density; }
 
 /// Share of the sparse part that lies within one line distance of a centre line. The reach is many
-/// line widths wide, and so are the steps in which it is sampled.
-double sparse_share_reached(const Polygons& sparse, const std::vector<Run>& runs,
-                            const Task& task) {
+/// line widths wide, and so are the steps in which it is sampled: nothing if the part slips through
+/// between them.
+std::optional<double> sparse_share_reached(const Polygons& sparse, const std::vector<Run>& runs,
+                                           const Task& task) {
   constexpr double kSamplesAcrossReach = 16;
   constexpr double kSamplesAcrossLayer = 128;
   constexpr double kMaxSamples = 4194304;  // 2^22
-  const double reach = task.spacing_mm() / task.density;
+  const double reach = reach_mm(task);
   const Box2 box = bounding_box(sparse);
   const double across = std::max(box.upper.x - box.lower.x, box.upper.y - box.lower.y);
   const double pitch = std::min(reach / kSamplesAcrossReach, across / kSamplesAcrossLayer);
   const SampleGrid grid(sparse, 0, pitch, kMaxSamples);
   BitPlane region(grid, sparse);
-  // A sliver may lie between samples: those beside it stand for it.
-  if (region.count() == 0) grow(region, sparse, grid.pitch_mm());
-  BitPlane reached(grid);
-  add_reach(reached, runs, reach, grid.pitch_mm() / 2);
-  const std::size_t hit = region.count([](Word a, Word b) { return a & b; }, reached);
-  return static_cast<double>(hit) / static_cast<double>(std::max<std::size_t>(1, region.count()));
+  const std::size_t samples = region.count();
+  if (samples == 0) return std::nullopt;
+  SamplesLeft left(std::move(region));
+  remove_reach(left, runs, reach, grid.pitch_mm() / 2);
+  return static_cast<double>(samples - left.count()) / static_cast<double>(samples);
+}
+
+/// As above by the layer's own samples, of which `sparse` are in the part.
+double sparse_share_reached_finely(const LayerSamples& samples, std::size_t sparse,
+                                   const std::vector<Run>& runs, const Task& task) {
+  BitPlane region = samples.sparse;
+  region.keep(samples.outline);
+  SamplesLeft left(std::move(region));
+  remove_reach(left, runs, reach_mm(task), samples.grid.pitch_mm() / 2);
+  return static_cast<double>(sparse - left.count()) / static_cast<double>(sparse);
 }
 
 std::size_t doubled_samples(const SampleGrid& grid, const std::vector<Run>& runs,
@@ -135,16 +154,20 @@ Coverage measure_coverage(const LayerSamples& samples, std::size_t outline_sampl
       [](Word p, Word s, Word b) { return p & ~s & b; }, samples.sparse, beads);
   const std::size_t sparse =
       samples.outline.count([](Word p, Word s) { return p & s; }, samples.sparse);
-  const double sparse_reached =
-      sparse > 0 && task.density > 0 ? sparse_share_reached(demand.sparse, runs, task) : 1;
+  double sparse_reached = 1;
+  if (sparse > 0 && task.density > 0) {
+    const std::optional<double> share_reached = sparse_share_reached(demand.sparse, runs, task);
+    sparse_reached =
+        share_reached ? *share_reached : sparse_share_reached_finely(samples, sparse, runs, task);
+  }
   result.covered =
       share(static_cast<double>(under_beads) + static_cast<double>(sparse) * sparse_reached);
 
-  BitPlane within = samples.outline;
-  grow(within, demand.outline, task.line_width_mm / 2);
-  const std::size_t outside = beads.count([](Word b, Word in) { return b & ~in; }, within);
+  beads.remove(samples.outline);
+  SamplesLeft outside(std::move(beads));
+  outside.remove(demand.outline, task.line_width_mm / 2);
   result.spilled =
-      share(static_cast<double>(outside) + area_beyond_mm2(grid, runs) / grid.sample_mm2());
+      share(static_cast<double>(outside.count()) + area_beyond_mm2(grid, runs) / grid.sample_mm2());
   return result;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 
 #include "judge/capsule.hpp"
 #include "routebench/geometry/region.hpp"
@@ -19,7 +20,6 @@ constexpr double kMaxCells = 1048576;   // 2^20
 struct Sample {
   Point2 point;
   double length_mm = 0;
-  bool reached = false;
 };
 
 std::vector<Sample> sample_boundary(const Polygons& polygons, double pitch_mm) {
@@ -32,7 +32,7 @@ std::vector<Sample> sample_boundary(const Polygons& polygons, double pitch_mm) {
       const double length = distance(a, b);
       const double pieces = std::ceil(length / pitch_mm);
       for (double k = 0; k < pieces; k += 1)
-        samples.push_back({lerp(a, b, (k + 0.5) / pieces), length / pieces, false});
+        samples.push_back({lerp(a, b, (k + 0.5) / pieces), length / pieces});
     }
   };
   for (const Polygon& polygon : polygons) {
@@ -41,6 +41,23 @@ std::vector<Sample> sample_boundary(const Polygons& polygons, double pitch_mm) {
   }
   return samples;
 }
+
+/// A segment that is asked for its distance to many points.
+class Bead {
+ public:
+  Bead(Point2 a, Point2 b)
+      : a_(a), run_(b - a), inverse_(dot(run_, run_) > 0 ? 1 / dot(run_, run_) : 0) {}
+
+  [[nodiscard]] double squared_distance_to(Point2 p) const {
+    const Point2 way = p - a_;
+    return squared_distance(way, std::clamp(dot(way, run_) * inverse_, 0.0, 1.0) * run_);
+  }
+
+ private:
+  Point2 a_;
+  Point2 run_;
+  double inverse_;  // of the squared length
+};
 
 /// Samples by cells of a grid along the axes, so that a bead looks at those near it only.
 class SampleCells {
@@ -58,22 +75,25 @@ class SampleCells {
     samples_.resize(samples.size());
     std::vector<std::uint32_t> next(begin_.begin(), begin_.end() - 1);
     for (const Sample& sample : samples) samples_[next[cell_of(sample.point)]++] = sample;
+    unreached_end_.assign(begin_.begin() + 1, begin_.end());
   }
 
   void reach_from(Point2 a, Point2 b) {
     // Any point within reach lies in a cell whose centre is less than half a diagonal further away.
     constexpr double kHalfDiagonal = 0.7072;
+    const Bead bead(a, b);
     visit_capsule_rows(to_cells(a), to_cells(b), reach_mm_ / cell_mm_ + kHalfDiagonal, rows_,
-                       [&](std::size_t row, Span span, Span) { reach_in(row, span, a, b); });
+                       [&](std::size_t row, Span span) { reach_in(row, span, bead); });
   }
 
   [[nodiscard]] double share_reached() const {
     double reached = 0;
     double all = 0;
-    for (const Sample& sample : samples_) {
-      all += sample.length_mm;
-      if (sample.reached) reached += sample.length_mm;
-    }
+    for (std::size_t cell = 0; cell < unreached_end_.size(); ++cell)
+      for (std::uint32_t i = begin_[cell]; i < begin_[cell + 1]; ++i) {
+        all += samples_[i].length_mm;
+        if (i >= unreached_end_[cell]) reached += samples_[i].length_mm;
+      }
     return reached / all;
   }
 
@@ -90,19 +110,17 @@ class SampleCells {
     return place(p.y - lower_.y, rows_) * columns_ + place(p.x - lower_.x, columns_);
   }
 
-  void reach_in(std::size_t row, Span span, Point2 a, Point2 b) {
+  void reach_in(std::size_t row, Span span, const Bead& bead) {
     const double first = std::max(std::ceil(span.left), 0.0);
     const double last = std::min(std::floor(span.right), static_cast<double>(columns_) - 1);
     if (first > last) return;
-    const std::size_t begin = begin_[row * columns_ + static_cast<std::size_t>(first)];
-    const std::size_t end = begin_[row * columns_ + static_cast<std::size_t>(last) + 1];
-    for (std::size_t i = begin; i < end; ++i) {
-      Sample& sample = samples_[i];
-      if (!sample.reached &&
-          squared_distance(sample.point, nearest_on_segment(sample.point, a, b)) <=
-              reach_mm_ * reach_mm_)
-        sample.reached = true;
-    }
+    const std::size_t end = row * columns_ + static_cast<std::size_t>(last) + 1;
+    for (std::size_t cell = row * columns_ + static_cast<std::size_t>(first); cell < end; ++cell)
+      for (std::uint32_t i = begin_[cell]; i < unreached_end_[cell];)
+        if (bead.squared_distance_to(samples_[i].point) <= reach_mm_ * reach_mm_)
+          std::swap(samples_[i], samples_[--unreached_end_[cell]]);
+        else
+          ++i;
   }
 
   Point2 lower_;
@@ -110,8 +128,9 @@ class SampleCells {
   double cell_mm_ = 1;
   std::size_t columns_ = 0;
   std::size_t rows_ = 0;
-  std::vector<Sample> samples_;       // cell by cell
-  std::vector<std::uint32_t> begin_;  // of cell c: samples_[begin_[c] .. begin_[c + 1])
+  std::vector<Sample> samples_;               // cell by cell
+  std::vector<std::uint32_t> begin_;          // of cell c: samples_[begin_[c] .. begin_[c + 1])
+  std::vector<std::uint32_t> unreached_end_;  // of cell c: those before it were not reached yet
 };
 
 }  // namespace

@@ -4,6 +4,8 @@
 #include <bit>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <limits>
 
 #include "judge/bit_plane.hpp"
 #include "judge/cell_field.hpp"
@@ -16,21 +18,60 @@ namespace {
 constexpr double kLeastShare = 0.7;
 constexpr double kReachDistances = 2.5;  // of the average, in line distances
 
+/// A box of samples: columns and rows, from the first to before the end.
+struct SampleBox {
+  std::size_t first_column = 0;
+  std::size_t end_column = 0;
+  std::size_t first_row = 0;
+  std::size_t end_row = 0;
+
+  /// Those of a grid that lie in polygons or, where a point is rounded to the nearest sample, on
+  /// their boundary; the first ones are multiples of `multiple`.
+  SampleBox(const SampleGrid& grid, const Polygons& polygons, std::size_t multiple) {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    Point2 lower{kInfinity, kInfinity};
+    Point2 upper{-kInfinity, -kInfinity};
+    for (const Polygon& polygon : polygons)
+      for (const Point2 p : polygon.outer) {
+        const Point2 steps = grid.to_steps(p);
+        lower = {std::min(lower.x, steps.x), std::min(lower.y, steps.y)};
+        upper = {std::max(upper.x, steps.x), std::max(upper.y, steps.y)};
+      }
+    const auto place = [](double steps, std::size_t end) {
+      return static_cast<std::size_t>(std::clamp(steps, 0.0, static_cast<double>(end)));
+    };
+    first_column = place(lower.x - 1, grid.columns()) / multiple * multiple;
+    end_column = place(upper.x + 2, grid.columns());
+    first_row = place(lower.y - 1, grid.rows()) / multiple * multiple;
+    end_row = place(upper.y + 2, grid.rows());
+  }
+
+  /// False if no point of segment ab, in steps, has its nearest sample here.
+  [[nodiscard]] bool may_hold_of(Point2 a, Point2 b) const noexcept {
+    return std::max(a.x, b.x) + 1 >= static_cast<double>(first_column) &&
+           std::min(a.x, b.x) <= static_cast<double>(end_column) &&
+           std::max(a.y, b.y) + 1 >= static_cast<double>(first_row) &&
+           std::min(a.y, b.y) <= static_cast<double>(end_row);
+  }
+};
+
 /// What one part of a layer demands and gets, in cells of equally many samples.
 class PartLedger {
  public:
-  PartLedger(const BitPlane& part, double line_distance_mm)
-      : part_(part),
-        grid_(part.grid()),
+  PartLedger(const BitPlane& samples, const Polygons& part, double line_distance_mm)
+      : part_(samples),
+        grid_(part_.grid()),
         line_distance_mm_(line_distance_mm),
         cell_steps_(cell_steps(grid_.to_steps(line_distance_mm))),
-        demanded_(cells(grid_.columns()), cells(grid_.rows())),
-        laid_(cells(grid_.columns()), cells(grid_.rows())) {
+        box_(grid_, part, cell_steps_),
+        demanded_(cells(box_.end_column - box_.first_column), cells(box_.end_row - box_.first_row)),
+        laid_(demanded_) {
     count_samples();
   }
 
   /// A bead `strength` times as strong as the task's.
   void lay(Point2 a, Point2 b, double strength) {
+    if (!box_.may_hold_of(grid_.to_steps(a), grid_.to_steps(b))) return;
     visit_pieces(a, b, [&](std::size_t column, std::size_t row, double length_mm) {
       if (part_.test(column, row)) add(column, row, length_mm * strength);
     });
@@ -81,12 +122,13 @@ class PartLedger {
     const std::size_t stride = std::max<std::size_t>(1, cell_steps_ / 2);
     const BitPlane::Word mask = ~BitPlane::Word{0} >> (BitPlane::kWordBits - cell_steps_);
     const std::size_t cells_a_word = BitPlane::kWordBits / cell_steps_;
-    for (std::size_t row = stride / 2; row < grid_.rows(); row += stride)
-      for (std::size_t i = 0; i < part_.row_words(); ++i) {
-        BitPlane::Word word = part_.words()[row * part_.row_words() + i];
+    for (std::size_t row = box_.first_row + stride / 2; row < box_.end_row; row += stride)
+      for (std::size_t i = box_.first_column / BitPlane::kWordBits;
+           i * BitPlane::kWordBits < box_.end_column; ++i) {
+        BitPlane::Word word = part_.row(row)[i];
         for (std::size_t cell = i * cells_a_word; word != 0; ++cell) {
           if (const int set = std::popcount(word & mask); set > 0)
-            demanded_.at(cell, row / cell_steps_) +=
+            cell_at(demanded_, cell * cell_steps_, row) +=
                 static_cast<float>(static_cast<std::size_t>(set) * stride);
           word = cell_steps_ == BitPlane::kWordBits ? 0 : word >> cell_steps_;
         }
@@ -103,26 +145,37 @@ class PartLedger {
     const Point2 run = grid_.to_steps(lerp(a, b, shares.leave)) - from;
     const double count =
         std::ceil(grid_.to_steps(length_mm) * 2 / static_cast<double>(cell_steps_));
-    const auto nearest = [](double steps, std::size_t end) {
+    const auto nearest = [](double steps, double last) {
+      // By way of a signed number: to an unsigned one is several instructions on most processors.
       return static_cast<std::size_t>(
-          std::clamp(std::floor(steps + 0.5), 0.0, static_cast<double>(end - 1)));
+          static_cast<std::int64_t>(std::clamp(steps + 0.5, 0.0, last)));
     };
+    const double last_column = static_cast<double>(grid_.columns() - 1);
+    const double last_row = static_cast<double>(grid_.rows() - 1);
+    const double piece_mm = length_mm / count;
     for (double i = 0; i < count; i += 1) {
       const Point2 middle = from + ((i + 0.5) / count) * run;
-      visit(nearest(middle.x, grid_.columns()), nearest(middle.y, grid_.rows()), length_mm / count);
+      visit(nearest(middle.x, last_column), nearest(middle.y, last_row), piece_mm);
     }
   }
 
   /// Every mm of line fills its distance's width.
   void add(std::size_t column, std::size_t row, double length_mm) {
-    laid_.at(column / cell_steps_, row / cell_steps_) +=
+    cell_at(laid_, column, row) +=
         static_cast<float>(length_mm * line_distance_mm_ / grid_.sample_mm2());
+  }
+
+  /// The cell of a sample in the box.
+  [[nodiscard]] float& cell_at(CellField& field, std::size_t column, std::size_t row) const {
+    return field.at((column - box_.first_column) / cell_steps_,
+                    (row - box_.first_row) / cell_steps_);
   }
 
   const BitPlane& part_;
   const SampleGrid& grid_;
   double line_distance_mm_;
   std::size_t cell_steps_;
+  SampleBox box_;
   CellField demanded_;  // in samples
   CellField laid_;
 };
@@ -130,7 +183,7 @@ class PartLedger {
 double skipped_of_part_mm2(const BitPlane& samples, const Polygons& part, double line_distance_mm,
                            const std::vector<Run>& runs, const Task& task) {
   if (part.empty()) return 0;
-  PartLedger ledger(samples, line_distance_mm);
+  PartLedger ledger(samples, part, line_distance_mm);
   visit_beads(runs, [&](Point2 a, Point2 b, double width_mm) {
     ledger.lay(a, b, task.mean_width_mm(width_mm) / task.spacing_mm());
   });

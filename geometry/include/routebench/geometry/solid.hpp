@@ -2,6 +2,7 @@
 /// Which part of each layer must be dense.
 
 #include <cstddef>
+#include <memory>
 #include <vector>
 
 #include "routebench/geometry/parallel.hpp"
@@ -19,6 +20,30 @@ namespace routebench {
 /// Cost   about three Boolean operations a layer, whatever skin_layers is.
 void find_solid(std::vector<Layer>& layers, int skin_layers,
                 const ParallelFor& parallel_for = serial_for);
+
+/// Finds what find_solid finds, but only inside of given regions. Where a region lies clear of all
+/// air, as the inside of a steep wall does, that is seen without any Boolean operation.
+/// Immutable after construction; safe from any thread.
+class SkinFinder {
+ public:
+  /// The layers must outlive the finder.
+  /// Throws Error{kBadUsage} for skin_layers < 0.
+  SkinFinder(const std::vector<Layer>& layers, int skin_layers,
+             const ParallelFor& parallel_for = serial_for);
+  ~SkinFinder();
+  SkinFinder(SkinFinder&&) noexcept;
+  SkinFinder& operator=(SkinFinder&&) noexcept;
+
+  /// What of a region has air within reach above or below; slivers are not left out.
+  /// Takes  a place in the layers, and a region inside of that layer.
+  /// Cost   linear in the edges of the region and of the layers within reach; a Boolean operation
+  ///        for each layer that does not hold the whole region.
+  [[nodiscard]] Polygons skins_in(const Polygons& region, std::size_t layer) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
 
 /// Which facets make the layers about them dense as a whole: two rules that are cheaper than
 /// find_solid and cruder, for the experiments that compare them.

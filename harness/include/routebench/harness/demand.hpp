@@ -1,6 +1,8 @@
 #pragma once
 /// How a layer is cut into what has to be walled, filled densely and filled sparsely.
 
+#include <functional>
+
 #include "routebench/geometry/types.hpp"
 #include "routebench/harness/task.hpp"
 
@@ -18,5 +20,10 @@ struct Demand {
 /// Cuts a layer. A skin narrower than a line is not a place that can be filled for itself and
 /// counts as sparse. At task.density = 1 all of the inside is dense.
 [[nodiscard]] Demand demand_of(const Layer& layer, const Task& task);
+
+/// As above, with skins from elsewhere than Layer::solid: `skins_in` is asked once, for those in
+/// the layer's inside.
+[[nodiscard]] Demand demand_of(const Layer& layer, const Task& task,
+                               const std::function<Polygons(const Polygons& inside)>& skins_in);
 
 }  // namespace routebench

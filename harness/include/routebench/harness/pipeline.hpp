@@ -71,7 +71,7 @@ void require_all_loaded(const PlannerSet& planners);
 struct SliceModelOptions {
   SliceMethod method = SliceMethod::kBucket;
   bool repair = false;     ///< see ModelOptions and SliceOptions
-  bool find_skins = true;  ///< whether Layer::solid is wanted
+  bool find_skins = true;  ///< whether Layer::solid is wanted of layers that are not all dense
   std::optional<double> cell_mm =
       std::nullopt;  ///< for voxel: see SliceOptions; else the task's line width
   /// Told what container voxel is going to use, before it does.
@@ -104,6 +104,12 @@ struct PreparedModel {
   std::vector<Demand> demands;  ///< one a layer
 };
 
+/// What a task demands of each layer of a model, which may have been sliced for another task that
+/// asks for the same layers. Skins are found in what the walls leave.
+[[nodiscard]] std::vector<Demand> demands_of(const SlicedModel& sliced, const Task& task,
+                                             const ParallelFor& parallel_for);
+
+/// Slices a model and finds its demands. Layer::solid is set only where a whole layer is dense.
 [[nodiscard]] PreparedModel prepare_model(const std::string& spec, const Task& task,
                                           const SliceModelOptions& options,
                                           const ParallelFor& parallel_for);

@@ -1,0 +1,57 @@
+#include "overlay/edge_cells.hpp"
+
+#include <bit>
+#include <cmath>
+#include <cstdlib>
+
+namespace routebench::overlay {
+namespace {
+
+/// Cells as wide as 2^result: a few for each edge, as most of them hold none, but not much narrower
+/// than edges are long.
+std::uint32_t shift_for(double width, double height, double mean_extent, double edges) {
+  constexpr double kCellsPerEdge = 1.5;
+  const double count = kCellsPerEdge * edges;
+  const double size = std::max(
+      {std::sqrt(width * height / count), mean_extent, std::max(width, height) / count, 1.0});
+  return static_cast<std::uint32_t>(std::bit_width(static_cast<std::uint64_t>(size))) - 1;
+}
+
+}  // namespace
+
+bool is_right_of(const Edge& e, const Edge& f) {
+  const auto upwards = [](const Edge& edge) {
+    return edge.from.y < edge.to.y ? edge : Edge{edge.to, edge.from};
+  };
+  const Edge a = upwards(e), b = upwards(f);
+  // The end that lies within the other's height decides; right of an upward edge is negative.
+  if (a.from.y >= b.from.y) {
+    if (const std::int64_t t = turn(b.from, b.to, a.from); t != 0) return t < 0;
+  } else if (const std::int64_t t = turn(a.from, a.to, b.from); t != 0) {
+    return t > 0;
+  }
+  if (a.to.y <= b.to.y) return turn(b.from, b.to, a.to) < 0;
+  return turn(a.from, a.to, b.to) > 0;
+}
+
+EdgeCells::EdgeCells(const GridRings& rings) {
+  lower_ = upper_ = rings.points().front();
+  double extents = 0;
+  for (std::uint32_t ring = 0; ring < rings.rings(); ++ring) {
+    const std::span<const GridPoint> points = rings.ring(ring);
+    GridPoint before = points.back();
+    for (const GridPoint p : points) {
+      lower_ = {std::min(lower_.x, p.x), std::min(lower_.y, p.y)};
+      upper_ = {std::max(upper_.x, p.x), std::max(upper_.y, p.y)};
+      extents += std::max(std::abs(p.x - before.x), std::abs(p.y - before.y));
+      before = p;
+    }
+  }
+  const double edges = rings.size();
+  shift_ = shift_for(upper_.x - lower_.x, upper_.y - lower_.y, extents / edges, edges);
+  columns_ = column(upper_.x) + 1;
+  head_.assign(std::size_t{columns_} * (row(upper_.y) + 1), kNone);
+  items_.reserve(2 * std::size_t{rings.size()});
+}
+
+}  // namespace routebench::overlay

@@ -1,0 +1,136 @@
+#pragma once
+/// A uniform grid over edges: which of them come near each other.
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "overlay/grid_rings.hpp"
+
+namespace routebench::overlay {
+
+struct Edge {
+  GridPoint from;
+  GridPoint to;
+};
+
+/// Lists of the edges that run through each cell. A few cells an edge.
+/// Cost   to add an edge: linear in the cells that it runs through and in the edges there.
+class EdgeCells {
+ public:
+  /// Cells for the edges of these rings and others within their bounds.
+  explicit EdgeCells(const GridRings& rings);
+
+  /// Adds an edge by its number; calls near(other's number) for each that is in one of its cells,
+  /// possibly several times.
+  template <typename Near>
+  void add(std::uint32_t number, const Edge& edge, Near&& near) {
+    visit_cells(edge, [&](std::uint32_t cell) {
+      for (std::uint32_t i = head_[cell]; i != kNone; i = items_[i].next) near(items_[i].edge);
+      items_.push_back({number, head_[cell]});
+      head_[cell] = static_cast<std::uint32_t>(items_.size() - 1);
+    });
+  }
+
+  /// Whether a point lies within the bounds.
+  [[nodiscard]] bool cover(GridPoint p) const {
+    return lower_.x <= p.x && p.x <= upper_.x && lower_.y <= p.y && p.y <= upper_.y;
+  }
+
+  /// Whether `is_it` holds for any edge in the cells that another one, within the bounds, runs
+  /// through.
+  template <typename IsIt>
+  [[nodiscard]] bool any_near(const Edge& edge, IsIt&& is_it) const {
+    bool found = false;
+    visit_cells(edge, [&](std::uint32_t cell) {
+      for (std::uint32_t i = head_[cell]; i != kNone && !found; i = items_[i].next)
+        found = is_it(items_[i].edge);
+    });
+    return found;
+  }
+
+  /// The first edge that a ray from p to the left meets, of those that `counts` names; kNone if
+  /// there is none. The ray runs infinitesimally above p's height, so that it meets no vertex.
+  /// Edges must not cross each other.
+  template <typename EdgeOf, typename Counts>
+  [[nodiscard]] std::uint32_t first_to_the_left(GridPoint p, EdgeOf&& edge_of,
+                                                Counts&& counts) const;
+
+ private:
+  struct Item {
+    std::uint32_t edge;
+    std::uint32_t next;
+  };
+
+  [[nodiscard]] std::uint32_t column(std::int32_t x) const {
+    return static_cast<std::uint32_t>(x - lower_.x) >> shift_;
+  }
+  [[nodiscard]] std::uint32_t row(std::int32_t y) const {
+    return static_cast<std::uint32_t>(y - lower_.y) >> shift_;
+  }
+  template <typename Visit>
+  void visit_cells(const Edge& edge, Visit&& visit) const;
+
+  GridPoint lower_;
+  GridPoint upper_;
+  std::uint32_t shift_ = 0;
+  std::uint32_t columns_ = 0;
+  std::vector<std::uint32_t> head_;  // of each cell's list, row by row
+  std::vector<Item> items_;
+};
+
+/// Whether edge e meets a height more to the right than edge f. Both span the height; they may meet
+/// in an end but do not cross.
+[[nodiscard]] bool is_right_of(const Edge& e, const Edge& f);
+
+template <typename Visit>
+void EdgeCells::visit_cells(const Edge& edge, Visit&& visit) const {
+  const auto [x0, x1] = std::minmax(edge.from.x, edge.to.x);
+  const auto [y0, y1] = std::minmax(edge.from.y, edge.to.y);
+  const std::uint32_t c0 = column(x0), c1 = column(x1), r0 = row(y0), r1 = row(y1);
+  if (c0 == c1 || r0 == r1) {
+    for (std::uint32_t r = r0; r <= r1; ++r)
+      for (std::uint32_t c = c0; c <= c1; ++c) visit(r * columns_ + c);
+    return;
+  }
+  const double slope = static_cast<double>(edge.to.x - edge.from.x) / (edge.to.y - edge.from.y);
+  for (std::uint32_t r = r0; r <= r1; ++r) {
+    const double low =
+        std::max<double>(y0, lower_.y + static_cast<double>(std::int64_t{r} << shift_));
+    const double high =
+        std::min<double>(y1, lower_.y + static_cast<double>(std::int64_t{r + 1} << shift_));
+    const double xa = edge.from.x + slope * (low - edge.from.y);
+    const double xb = edge.from.x + slope * (high - edge.from.y);
+    // A unit more on either side, for what arithmetic and cutting have rounded.
+    const auto left = static_cast<std::int32_t>(std::max<double>(x0, std::min(xa, xb) - 1));
+    const auto right = static_cast<std::int32_t>(std::min<double>(x1, std::max(xa, xb) + 1));
+    for (std::uint32_t c = column(left); c <= column(right); ++c) visit(r * columns_ + c);
+  }
+}
+
+template <typename EdgeOf, typename Counts>
+std::uint32_t EdgeCells::first_to_the_left(GridPoint p, EdgeOf&& edge_of, Counts&& counts) const {
+  std::uint32_t best = kNone;
+  const std::uint32_t first_cell = row(p.y) * columns_;
+  for (std::uint32_t c = column(p.x) + 1; c-- > 0;) {
+    for (std::uint32_t i = head_[first_cell + c]; i != kNone; i = items_[i].next) {
+      const std::uint32_t e = items_[i].edge;
+      const Edge edge = edge_of(e);
+      const bool rises = edge.from.y < edge.to.y;
+      const GridPoint low = rises ? edge.from : edge.to, high = rises ? edge.to : edge.from;
+      if (low.y > p.y || high.y <= p.y || e == best) continue;
+      if (turn(low, high, p) >= 0 || !counts(e)) continue;  // p must lie to its right
+      if (best == kNone || is_right_of(edge, edge_of(best))) best = e;
+    }
+    if (best == kNone) continue;
+    // An edge of a cell further left may still be nearer if the best one lies left of this cell.
+    const Edge edge = edge_of(best);
+    const double share = static_cast<double>(p.y - edge.from.y) / (edge.to.y - edge.from.y);
+    const double x = edge.from.x + share * (edge.to.x - edge.from.x);
+    if (x > lower_.x + static_cast<double>(std::int64_t{c} << shift_) + 2) break;
+  }
+  return best;
+}
+
+}  // namespace routebench::overlay

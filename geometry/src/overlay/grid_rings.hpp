@@ -1,0 +1,85 @@
+#pragma once
+/// Closed rings of whole grid units, as overlays work on them.
+
+#include <compare>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+namespace routebench::overlay {
+
+/// A place on the grid of layers. Coordinates stay within kMaxUnits, so that differences fit into
+/// 32 bits and cross products into 64.
+struct GridPoint {
+  std::int32_t x = 0;
+  std::int32_t y = 0;
+  friend bool operator==(const GridPoint&, const GridPoint&) = default;
+  friend auto operator<=>(const GridPoint&, const GridPoint&) = default;
+};
+
+inline constexpr std::int32_t kMaxUnits = (1 << 30) - 1;  // 1024 mm
+
+inline constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+
+/// Twice the area of triangle abc; positive where c lies to the left of ab.
+[[nodiscard]] inline std::int64_t turn(GridPoint a, GridPoint b, GridPoint c) noexcept {
+  return std::int64_t{b.x - a.x} * (c.y - a.y) - std::int64_t{b.y - a.y} * (c.x - a.x);
+}
+
+/// How often the rings of two sets run round a place.
+struct Winding {
+  std::int32_t first = 0;
+  std::int32_t second = 0;
+  friend bool operator==(const Winding&, const Winding&) = default;
+  friend Winding operator+(Winding a, Winding b) {
+    return {a.first + b.first, a.second + b.second};
+  }
+  friend Winding operator-(Winding a, Winding b) {
+    return {a.first - b.first, a.second - b.second};
+  }
+};
+
+/// Many rings in one array.
+class GridRings {
+ public:
+  /// Begins a ring; what lies to its left is run round `winding` times more.
+  void begin_ring(Winding winding) {
+    begin_.push_back(static_cast<std::uint32_t>(points_.size()));
+    windings_.push_back(winding);
+  }
+  /// Adds a point to the last ring, unless it repeats the one before.
+  void add(GridPoint p) {
+    if (points_.size() > begin_.back() && points_.back() == p) return;
+    points_.push_back(p);
+  }
+  /// Ends the last ring. Rings of fewer than three points enclose nothing and are dropped.
+  void end_ring() {
+    while (points_.size() > begin_.back() + 1 && points_.back() == points_[begin_.back()])
+      points_.pop_back();
+    if (points_.size() >= begin_.back() + 3) return;
+    points_.resize(begin_.back());
+    begin_.pop_back();
+    windings_.pop_back();
+  }
+
+  [[nodiscard]] std::uint32_t rings() const { return static_cast<std::uint32_t>(begin_.size()); }
+  [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(points_.size()); }
+  [[nodiscard]] std::uint32_t begin(std::uint32_t ring) const { return begin_[ring]; }
+  [[nodiscard]] std::uint32_t end(std::uint32_t ring) const {
+    return ring + 1 < rings() ? begin_[ring + 1] : size();
+  }
+  [[nodiscard]] std::span<const GridPoint> ring(std::uint32_t ring) const {
+    return {points_.data() + begin(ring), points_.data() + end(ring)};
+  }
+  [[nodiscard]] Winding winding(std::uint32_t ring) const { return windings_[ring]; }
+  [[nodiscard]] const std::vector<GridPoint>& points() const { return points_; }
+  void reserve(std::size_t points) { points_.reserve(points); }
+
+ private:
+  std::vector<GridPoint> points_;
+  std::vector<std::uint32_t> begin_;
+  std::vector<Winding> windings_;
+};
+
+}  // namespace routebench::overlay

@@ -1,0 +1,292 @@
+#include "overlay/offset_rings.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <utility>
+
+namespace routebench::overlay {
+namespace {
+
+struct Vector {
+  double x = 0;
+  double y = 0;
+};
+
+double dot(Vector a, Vector b) { return a.x * b.x + a.y * b.y; }
+double cross(Vector a, Vector b) { return a.x * b.y - a.y * b.x; }
+
+GridPoint moved(Vector p, Vector by) {
+  const auto rounded = [](double v) {
+    return static_cast<std::int32_t>(v < 0 ? v - 0.5 : v + 0.5);
+  };
+  return {rounded(p.x + by.x), rounded(p.y + by.y)};
+}
+
+/// Draws the moved boundary of one ring after the other. The curve may cross itself; what it winds
+/// round at least once is the result.
+class MovedBoundary {
+ public:
+  MovedBoundary(double distance, std::size_t points) : distance_(distance) {
+    curve_.reserve(points + points / 2);
+  }
+
+  void add(std::span<const GridPoint> ring) {
+    corners_.clear();
+    for (const GridPoint p : ring)
+      corners_.push_back({static_cast<double>(p.x), static_cast<double>(p.y)});
+    do {
+      measure_edges();
+    } while (drop_used_edges());
+    const std::size_t n = corners_.size();
+    if (n < 3) return;  // nothing is left of the ring
+    curve_.begin_ring({1, 0});
+    for (std::size_t i = 0, before = n - 1; i < n; before = i++) join(corners_[i], before, i);
+    curve_.end_ring();
+  }
+
+  [[nodiscard]] GridRings take() { return std::move(curve_); }
+
+ private:
+  /// Normals, and what is left of the moved edges if every corner is one point.
+  void measure_edges() {
+    const std::size_t n = corners_.size();
+    normals_.resize(n);
+    left_.resize(n);
+    used_.resize(n);
+    for (std::size_t i = 0; i < n; ++i) {
+      const Vector a = corners_[i], b = corners_[i + 1 < n ? i + 1 : 0];
+      const double dx = b.x - a.x, dy = b.y - a.y;
+      left_[i] = std::sqrt(dx * dx + dy * dy);
+      normals_[i] = {dy / left_[i], -dx / left_[i]};
+    }
+    for (std::size_t i = 0, before = n - 1; i < n; before = i++)
+      used_[i] = used_at_corner(normals_[before], normals_[i]);
+    for (std::size_t i = 0; i < n; ++i) left_[i] -= used_[i] + used_[i + 1 < n ? i + 1 : 0];
+  }
+
+  /// By how much the moved edges about a corner are shorter if they end where they cross; negative
+  /// if they are longer.
+  [[nodiscard]] double used_at_corner(Vector u, Vector v) const {
+    const double sine = cross(u, v), cosine = dot(u, v);
+    return 1 + cosine < kShortestMitre ? 0 : -distance_ * sine / (1 + cosine);
+  }
+
+  /// Edges between two corners at which moved edges cross, and of which nothing is left, are gone
+  /// before the boundary has moved all the way: from then on their neighbours meet, which are
+  /// farther from them than the distance. So they may as well have met from the beginning. True if
+  /// there was such an edge.
+  bool drop_used_edges() {
+    const std::size_t n = corners_.size();
+    if (n < 4) return false;
+    kept_.clear();
+    bool dropped = false;
+    const auto are_one = [](Vector a, Vector b) {
+      return std::abs(a.x - b.x) + std::abs(a.y - b.y) < 1;
+    };
+    const auto keep = [&](Vector p) {
+      if (kept_.empty() || !are_one(kept_.back(), p)) kept_.push_back(p);
+    };
+    for (std::size_t i = 0; i < n; ++i) {
+      const std::size_t next = i + 1 < n ? i + 1 : 0, before = i > 0 ? i - 1 : n - 1;
+      const bool may_go = left_[i] < 0 && used_[i] > 0 && used_[next] > 0 && next != 0;
+      if (may_go) {
+        if (const std::optional<Vector> meeting = meeting_of(before, next)) {
+          keep(*meeting);
+          dropped = true;
+          ++i;  // both ends are replaced
+          continue;
+        }
+      }
+      keep(corners_[i]);
+    }
+    if (!dropped) return false;
+    while (kept_.size() > 1 && are_one(kept_.back(), kept_.front())) kept_.pop_back();
+    std::swap(corners_, kept_);
+    return corners_.size() >= 3;
+  }
+
+  /// Where the lines of two edges meet, if they turn less than a mitre allows.
+  [[nodiscard]] std::optional<Vector> meeting_of(std::size_t e, std::size_t f) const {
+    const Vector u = normals_[e], v = normals_[f];
+    const double sine = cross(u, v);
+    if (sine * distance_ >= 0 || 1 + dot(u, v) < kShortestMitre) return std::nullopt;
+    // Along e, whose direction is its normal turned left.
+    const Vector along{-u.y, u.x}, from = corners_[e], to = corners_[f];
+    const Vector gap{to.x - from.x, to.y - from.y};
+    const double share = dot(gap, v) / dot(along, v);
+    return Vector{from.x + share * along.x, from.y + share * along.y};
+  }
+
+  /// The curve about the point between two edges.
+  void join(Vector p, std::size_t before, std::size_t after) {
+    const Vector u = normals_[before], v = normals_[after];
+    const double sine = cross(u, v), cosine = dot(u, v);
+    const auto go_to = [&](Vector by) {
+      curve_.add(moved(p, {distance_ * by.x, distance_ * by.y}));
+    };
+    const double mitre = 1 / (1 + cosine);
+    const Vector tip{(u.x + v.x) * mitre, (u.y + v.y) * mitre};
+    if (std::abs(sine * distance_) < 1 && cosine > 0) {
+      go_to(u);
+    } else if (sine * distance_ < 0) {
+      // The moved edges cross. Where neither is used up by that, only their crossing matters.
+      if (1 + cosine >= kShortestMitre && left_[before] >= 0 && left_[after] >= 0)
+        return go_to(tip);
+      go_to(u);
+      curve_.add(moved(p, {}));
+      go_to(v);
+    } else if (1 + cosine >= kShortestMitre) {
+      go_to(tip);
+    } else {
+      const double cut =
+          std::tan(std::atan2(std::abs(sine), cosine) / 4) * (distance_ < 0 ? -1 : 1);
+      go_to({u.x - u.y * cut, u.y + u.x * cut});
+      go_to({v.x + v.y * cut, v.y - v.x * cut});
+    }
+  }
+
+  static constexpr double kShortestMitre = 0.5;  // 1 + cosine of the turn: a mitre of twice
+
+  double distance_;
+  GridRings curve_;
+  std::vector<Vector> corners_;  // of the ring, corner i at the beginning of edge i
+  std::vector<Vector> kept_;
+  std::vector<Vector> normals_;  // of edges
+  std::vector<double> left_;     // of edges
+  std::vector<double> used_;     // at corners
+};
+
+/// Takes the points away that lie next to their neighbours or to the line between them. However
+/// many go, and however short the edges of a curve are, no edge strays further from the points that
+/// it stands for than `reach`.
+class Cleaner {
+ public:
+  explicit Cleaner(double reach) : reach_(reach), reach2_(reach * reach) {}
+
+  /// True if the ring has lost points. It may be left with none.
+  bool clean(GridRing& ring) {
+    const std::size_t n = ring.size();
+    next_.resize(n);
+    previous_.resize(n);
+    settled_.assign(n, 0);
+    strayed_.assign(n, 0);
+    for (std::size_t i = 0; i < n; ++i) {
+      next_[i] = i + 1 < n ? i + 1 : 0;
+      previous_[i] = i > 0 ? i - 1 : n - 1;
+    }
+    std::size_t size = n, at = 0;
+    while (size > 2 && settled_[at] == 0) {
+      const GridPoint before = ring[previous_[at]], here = ring[at], after = ring[next_[at]];
+      const double strays =
+          std::max(strayed_[previous_[at]], strayed_[at]) + height(before, here, after);
+      if (strays < reach_) {
+        at = remove(at, strays);
+        --size;
+      } else if (are_near(before, after)) {
+        remove(next_[at], 0);
+        at = remove(at, 0);
+        size -= 2;
+      } else {
+        settled_[at] = 1;
+        at = next_[at];
+      }
+    }
+    moved_.clear();
+    if (size == n) {
+      moved_.resize(n, 0);
+      return false;
+    }
+    if (size < 3) {
+      ring.clear();
+      return true;
+    }
+    GridRing kept;
+    kept.reserve(size);
+    for (std::size_t i = 0; i < size; ++i, at = next_[at]) {
+      kept.push_back(ring[at]);
+      moved_.push_back(next_[at] == (at + 1 < n ? at + 1 : 0) ? 0 : 1);
+    }
+    ring = std::move(kept);
+    return true;
+  }
+
+  /// Of the edges that the last ring has been left with: 1 where points between are gone.
+  [[nodiscard]] const std::vector<std::uint8_t>& moved() const { return moved_; }
+
+ private:
+  /// Takes a point away; the edge that then stands for it strays so far. Returns the point before,
+  /// which has to be looked at again.
+  std::size_t remove(std::size_t at, double strays) {
+    next_[previous_[at]] = next_[at];
+    previous_[next_[at]] = previous_[at];
+    settled_[previous_[at]] = 0;
+    strayed_[previous_[at]] = strays;
+    return previous_[at];
+  }
+
+  [[nodiscard]] bool are_near(GridPoint a, GridPoint b) const {
+    const double dx = a.x - b.x, dy = a.y - b.y;
+    return dx * dx + dy * dy <= reach2_;
+  }
+
+  /// How far the middle one of three points, in whichever order they lie, is from the line through
+  /// the others.
+  [[nodiscard]] static double height(GridPoint a, GridPoint b, GridPoint c) {
+    const auto square = [](GridPoint p, GridPoint q) {
+      const double dx = p.x - q.x, dy = p.y - q.y;
+      return dx * dx + dy * dy;
+    };
+    const double longest2 = std::max({square(a, b), square(b, c), square(a, c)});
+    return longest2 > 0 ? static_cast<double>(std::abs(turn(a, b, c))) / std::sqrt(longest2) : 0;
+  }
+
+  double reach_;
+  double reach2_;
+  std::vector<std::size_t> next_, previous_;
+  std::vector<std::uint8_t> settled_;
+  std::vector<double> strayed_;  // edges, by the point that they begin at
+  std::vector<std::uint8_t> moved_;
+};
+
+}  // namespace
+
+std::optional<std::vector<GridPolygon>> offset_rings(const GridRings& rings, double distance,
+                                                     double clean) {
+  Cleaner smoother(clean), cleaner(clean);
+  MovedBoundary boundary(distance, rings.size());
+  for (std::uint32_t i = 0; i < rings.rings(); ++i) {
+    const std::span<const GridPoint> points = rings.ring(i);
+    GridRing ring(points.begin(), points.end());
+    smoother.clean(ring);  // points as near as this make mitres that are noise
+    if (!ring.empty()) boundary.add(ring);
+  }
+  std::optional<std::vector<GridPolygon>> grown = overlay(boundary.take(), Inside::kFirstPositive);
+  if (!grown) return std::nullopt;
+
+  GridRings cleaned;
+  std::vector<std::uint8_t> moved;
+  bool any_moved = false;
+  const auto clean_ring = [&](GridRing& ring) {
+    any_moved |= cleaner.clean(ring);
+    if (ring.empty()) return;
+    cleaned.begin_ring({1, 0});
+    for (const GridPoint p : ring) cleaned.add(p);
+    cleaned.end_ring();
+    moved.insert(moved.end(), cleaner.moved().begin(), cleaner.moved().end());
+  };
+  for (GridPolygon& polygon : *grown) {
+    clean_ring(polygon.outer);
+    for (GridRing& hole : polygon.holes) clean_ring(hole);
+    std::erase_if(polygon.holes, [](const GridRing& hole) { return hole.empty(); });
+  }
+  std::erase_if(*grown, [](const GridPolygon& polygon) { return polygon.outer.empty(); });
+  if (!any_moved || grown->empty()) return grown;
+  // Cleaning moves edges, so rings may overlap by as much.
+  if (!PlanarEdges(cleaned, moved).any_meets()) return grown;
+  return overlay(cleaned, Inside::kFirstNonZero);
+}
+
+}  // namespace routebench::overlay

@@ -1,0 +1,22 @@
+#pragma once
+/// What is left when polygons grow or shrink.
+
+#include <optional>
+#include <vector>
+
+#include "overlay/overlay.hpp"
+
+namespace routebench::overlay {
+
+/// Moves the boundary of polygons outwards by `distance` units (inwards if negative). Corners that
+/// the move pulls apart become mitres, or are cut off squarely at the distance where a mitre would
+/// be longer than twice the distance. The result is cleaned of points nearer than `clean` units to
+/// their neighbours' line.
+///
+/// Takes   rings as overlay returns them: the inside lies to their left.
+/// Returns nothing if the rings cannot be cut; see PlanarEdges.
+/// Cost    about linear where edges are spread evenly.
+[[nodiscard]] std::optional<std::vector<GridPolygon>> offset_rings(const GridRings& rings,
+                                                                   double distance, double clean);
+
+}  // namespace routebench::overlay

@@ -1,0 +1,35 @@
+#pragma once
+/// Booleans and fill rules: which of the faces that rings make belong together.
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "overlay/grid_rings.hpp"
+#include "overlay/planar_edges.hpp"
+
+namespace routebench::overlay {
+
+/// Which places are inside, by how often the rings of the two sets run round them.
+enum class Inside { kFirstPositive, kFirstNonZero, kFirstOdd, kEither, kBoth, kFirstOnly };
+
+using GridRing = std::vector<GridPoint>;
+
+/// Outer ring counter-clockwise, holes clockwise; rings may touch in points.
+struct GridPolygon {
+  GridRing outer;
+  std::vector<GridRing> holes;
+};
+
+/// The polygons that hold all that is inside. Rings may cross, overlap and repeat. No three
+/// consecutive points lie on a line.
+///
+/// Returns nothing if the rings cannot be cut; see PlanarEdges.
+/// Cost    about linear where edges are spread evenly.
+[[nodiscard]] std::optional<std::vector<GridPolygon>> overlay(const GridRings& rings,
+                                                              Inside inside);
+
+/// As above, of edges that are cut already.
+[[nodiscard]] std::vector<GridPolygon> faces_of(const PlanarEdges& planar, Inside inside);
+
+}  // namespace routebench::overlay

@@ -1,0 +1,169 @@
+#include "overlay/planar_edges.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+#include <utility>
+
+namespace routebench::overlay {
+namespace {
+
+constexpr int kMaxRounds = 20;
+
+/// Whether p, on the line through an edge, lies on the edge.
+bool within(const Edge& edge, GridPoint p) {
+  const auto [x0, x1] = std::minmax(edge.from.x, edge.to.x);
+  const auto [y0, y1] = std::minmax(edge.from.y, edge.to.y);
+  return x0 <= p.x && p.x <= x1 && y0 <= p.y && p.y <= y1;
+}
+
+/// Where two edges cross, to the nearest unit; the same whichever way they are given.
+GridPoint crossing_of(Edge e, Edge f) {
+  if (e.to < e.from) std::swap(e.from, e.to);
+  if (f.to < f.from) std::swap(f.from, f.to);
+  if (std::tie(f.from, f.to) < std::tie(e.from, e.to)) std::swap(e, f);
+  const auto a = static_cast<double>(turn(f.from, f.to, e.from));
+  const auto b = static_cast<double>(turn(f.from, f.to, e.to));
+  const double share = a / (a - b);
+  return {e.from.x + static_cast<std::int32_t>(std::lround(share * (e.to.x - e.from.x))),
+          e.from.y + static_cast<std::int32_t>(std::lround(share * (e.to.y - e.from.y)))};
+}
+
+}  // namespace
+
+PlanarEdges::PlanarEdges(const GridRings& rings) : rings_(rings), cells_(rings) {
+  link();
+  for (std::uint32_t e = 0; e < size(); ++e)
+    cells_.add(e, edge(e), [&](std::uint32_t f) {
+      if (come_near(e, f)) look(e, f);
+    });
+  cut_until_planar();
+}
+
+PlanarEdges::PlanarEdges(const GridRings& rings, const std::vector<std::uint8_t>& moved)
+    : rings_(rings), cells_(rings) {
+  link();
+  for (std::uint32_t e = 0; e < size(); ++e) {
+    const bool every = moved[e] != 0;
+    cells_.add(e, edge(e), [&](std::uint32_t f) {
+      if ((every || moved[f] != 0) && come_near(e, f)) look(e, f);
+    });
+  }
+  cut_until_planar();
+}
+
+void PlanarEdges::link() {
+  points_ = rings_.points();
+  next_.resize(points_.size());
+  boxes_.resize(points_.size());
+  meets_.assign(points_.size(), 0);
+  for (std::uint32_t ring = 0; ring < rings(); ++ring) {
+    const std::uint32_t begin = rings_.begin(ring), end = rings_.end(ring);
+    for (std::uint32_t i = begin; i < end; ++i) {
+      next_[i] = i + 1 < end ? i + 1 : begin;
+      set_box(i);
+    }
+  }
+}
+
+void PlanarEdges::set_box(std::uint32_t i) {
+  const auto [a, b] = edge(i);
+  boxes_[i] = {std::min(a.x, b.x), std::min(a.y, b.y), std::max(a.x, b.x), std::max(a.y, b.y)};
+}
+
+void PlanarEdges::cut_until_planar() {
+  for (int round = 0; round < kMaxRounds && !cuts_.empty(); ++round) {
+    const std::vector<std::uint32_t> pieces = apply_cuts();
+    // A piece that keeps its edge's number is in the cells twice, which does no harm.
+    for (const std::uint32_t e : pieces)
+      cells_.add(e, edge(e), [&](std::uint32_t f) {
+        if (e != f && come_near(e, f)) look(e, f);
+      });
+  }
+  are_planar_ = cuts_.empty();
+}
+
+std::vector<std::uint32_t> PlanarEdges::apply_cuts() {
+  any_meets_ = true;
+  const auto along = [&](const Cut& cut) {
+    const GridPoint from = points_[cut.edge];
+    const std::int64_t x = cut.at.x - from.x, y = cut.at.y - from.y;
+    return x * x + y * y;
+  };
+  std::vector<Cut> cuts = std::exchange(cuts_, {});
+  std::sort(cuts.begin(), cuts.end(), [&](const Cut& a, const Cut& b) {
+    if (a.edge != b.edge) return a.edge < b.edge;
+    return std::tuple(along(a), a.at) < std::tuple(along(b), b.at);
+  });
+  std::vector<std::uint32_t> pieces;
+  for (auto cut = cuts.begin(); cut != cuts.end();) {
+    const std::uint32_t edge = cut->edge, end = next_[edge];
+    std::uint32_t last = edge;
+    pieces.push_back(edge);
+    for (; cut != cuts.end() && cut->edge == edge; ++cut) {
+      if (points_[last] == cut->at) continue;
+      const std::uint32_t added = size();
+      points_.push_back(cut->at);
+      meets_.push_back(1);
+      next_.push_back(end);
+      boxes_.emplace_back();
+      pieces.push_back(added);
+      next_[last] = added;
+      last = added;
+    }
+  }
+  for (const std::uint32_t piece : pieces) set_box(piece);
+  return pieces;
+}
+
+void PlanarEdges::look(std::uint32_t e, std::uint32_t f) {
+  if (next_[e] == f) return look_at_fold(e, f);
+  if (next_[f] == e) return look_at_fold(f, e);
+  const Edge a = edge(e), b = edge(f);
+  const std::int64_t from_b = turn(a.from, a.to, b.from), to_b = turn(a.from, a.to, b.to);
+  if ((from_b > 0 && to_b > 0) || (from_b < 0 && to_b < 0)) return;
+  const std::int64_t from_a = turn(b.from, b.to, a.from), to_a = turn(b.from, b.to, a.to);
+  if ((from_a > 0 && to_a > 0) || (from_a < 0 && to_a < 0)) return;
+  if (from_b != 0 && to_b != 0 && from_a != 0 && to_a != 0) {
+    const GridPoint p = crossing_of(a, b);
+    touch(e, p);
+    touch(f, p);
+    return;
+  }
+  if (from_b == 0 && within(a, b.from)) touch_by(e, f);
+  if (to_b == 0 && within(a, b.to)) touch_by(e, next_[f]);
+  if (from_a == 0 && within(b, a.from)) touch_by(f, e);
+  if (to_a == 0 && within(b, a.to)) touch_by(f, next_[e]);
+}
+
+/// Neighbours of one ring meet beyond their common point only where the ring turns back.
+void PlanarEdges::look_at_fold(std::uint32_t e, std::uint32_t f) {
+  const GridPoint a = points_[e], b = points_[f], c = points_[next_[f]];
+  const std::int64_t along =
+      std::int64_t{a.x - b.x} * (c.x - b.x) + std::int64_t{a.y - b.y} * (c.y - b.y);
+  if (along <= 0 || turn(a, b, c) != 0) return;
+  meet(f);
+  if (within({a, b}, c)) touch_by(e, next_[f]);
+  if (within({b, c}, a)) touch_by(f, e);
+}
+
+void PlanarEdges::touch_by(std::uint32_t edge, std::uint32_t point) {
+  meet(point);
+  touch(edge, points_[point]);
+}
+
+void PlanarEdges::touch(std::uint32_t edge, GridPoint p) {
+  if (p == points_[edge])
+    meet(edge);
+  else if (p == points_[next_[edge]])
+    meet(next_[edge]);
+  else
+    cuts_.push_back({edge, p});
+}
+
+void PlanarEdges::meet(std::uint32_t point) {
+  meets_[point] = 1;
+  any_meets_ = true;
+}
+
+}  // namespace routebench::overlay

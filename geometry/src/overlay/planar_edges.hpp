@@ -1,0 +1,83 @@
+#pragma once
+/// Rings cut where they meet, so that edges share nothing but ends.
+
+#include <cstdint>
+#include <vector>
+
+#include "overlay/edge_cells.hpp"
+#include "overlay/grid_rings.hpp"
+
+namespace routebench::overlay {
+
+/// The edges of rings, cut at each other. Where edges cross, both are cut at the nearest place of
+/// the grid; that moves them by less than a unit, and what they then meet is cut again. Edge i runs
+/// from point i to the next point of its ring.
+class PlanarEdges {
+ public:
+  /// Takes at least one ring.
+  /// Cost  linear in edges and in pairs that come near each other.
+  explicit PlanarEdges(const GridRings& rings);
+
+  /// As above, of rings that met nowhere before some of their edges were moved: only pairs with one
+  /// of these are looked at.
+  PlanarEdges(const GridRings& rings, const std::vector<std::uint8_t>& moved);
+
+  /// False if cuts led to new cuts again and again, which has not been seen.
+  [[nodiscard]] bool are_planar() const { return are_planar_; }
+  /// Whether any two rings, or parts of one, meet.
+  [[nodiscard]] bool any_meets() const { return any_meets_; }
+
+  [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(points_.size()); }
+  [[nodiscard]] GridPoint point(std::uint32_t i) const { return points_[i]; }
+  [[nodiscard]] std::uint32_t next(std::uint32_t point) const { return next_[point]; }
+  [[nodiscard]] Edge edge(std::uint32_t i) const { return {points_[i], points_[next_[i]]}; }
+  /// Whether another point may lie at this one.
+  [[nodiscard]] bool meets(std::uint32_t point) const { return meets_[point] != 0; }
+
+  [[nodiscard]] std::uint32_t rings() const { return rings_.rings(); }
+  [[nodiscard]] std::uint32_t first_point(std::uint32_t ring) const { return rings_.begin(ring); }
+  [[nodiscard]] Winding winding(std::uint32_t ring) const { return rings_.winding(ring); }
+
+  /// See EdgeCells.
+  template <typename Counts>
+  [[nodiscard]] std::uint32_t first_to_the_left(GridPoint p, Counts&& counts) const {
+    return cells_.first_to_the_left(
+        p, [this](std::uint32_t e) { return edge(e); }, counts);
+  }
+
+ private:
+  struct Box {
+    std::int32_t left, low, right, high;
+  };
+  struct Cut {
+    std::uint32_t edge;
+    GridPoint at;
+  };
+
+  void link();
+  void set_box(std::uint32_t edge);
+  void cut_until_planar();
+  std::vector<std::uint32_t> apply_cuts();
+  void look(std::uint32_t e, std::uint32_t f);
+  void look_at_fold(std::uint32_t e, std::uint32_t f);
+  void touch_by(std::uint32_t edge, std::uint32_t point);
+  void touch(std::uint32_t edge, GridPoint p);
+  void meet(std::uint32_t point);
+  [[nodiscard]] bool come_near(std::uint32_t e, std::uint32_t f) const {
+    const Box &a = boxes_[e], &b = boxes_[f];
+    return (static_cast<int>(a.left <= b.right) & static_cast<int>(b.left <= a.right) &
+            static_cast<int>(a.low <= b.high) & static_cast<int>(b.low <= a.high)) != 0;
+  }
+
+  const GridRings& rings_;
+  std::vector<GridPoint> points_;  // those of the rings, then cuts
+  std::vector<std::uint32_t> next_;
+  std::vector<std::uint8_t> meets_;
+  std::vector<Box> boxes_;  // edges
+  EdgeCells cells_;
+  std::vector<Cut> cuts_;
+  bool any_meets_ = false;
+  bool are_planar_ = true;
+};
+
+}  // namespace routebench::overlay

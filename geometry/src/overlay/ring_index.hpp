@@ -1,0 +1,38 @@
+#pragma once
+/// Rings that can be asked what they hold.
+
+#include "overlay/edge_cells.hpp"
+#include "overlay/grid_rings.hpp"
+
+namespace routebench::overlay {
+
+/// Rings of polygons, which share nothing but points, with cells over their edges.
+class RingIndex {
+ public:
+  /// Takes at least one ring.
+  explicit RingIndex(GridRings rings);
+
+  [[nodiscard]] const GridRings& rings() const { return rings_; }
+
+  /// Whether a point lies inside; on the boundary it may be either.
+  [[nodiscard]] bool holds(GridPoint p) const;
+
+  /// Whether an edge meets the boundary, or leaves the box around it.
+  [[nodiscard]] bool meets(const Edge& edge) const;
+
+  /// Whether other rings lie inside, clear of the boundary and of all holes.
+  /// Cost  linear in the other's edges and in the number of own rings, where edges are spread
+  ///       evenly.
+  [[nodiscard]] bool holds_all_of(const RingIndex& other) const;
+
+ private:
+  [[nodiscard]] Edge edge(std::uint32_t i) const {
+    return {rings_.points()[i], rings_.points()[next_[i]]};
+  }
+
+  GridRings rings_;
+  std::vector<std::uint32_t> next_;
+  EdgeCells cells_;
+};
+
+}  // namespace routebench::overlay

@@ -1,0 +1,94 @@
+/// Speed of region work: offsets, Booleans, skins.
+
+#include <benchmark/benchmark.h>
+
+#include "bench_models.hpp"
+#include "routebench/geometry/region.hpp"
+#include "routebench/geometry/slice.hpp"
+#include "routebench/geometry/solid.hpp"
+
+namespace {
+
+using namespace routebench;
+
+void over_points(benchmark::internal::Benchmark* bench) {
+  bench->RangeMultiplier(4)->Range(64, 1 << 14)->Unit(benchmark::kMicrosecond)->Complexity();
+}
+
+void shrink_by_a_line(benchmark::State& state) {
+  const Layer layer = bench::star_layer(state.range(0));
+  for (auto _ : state) benchmark::DoNotOptimize(offset(layer.polygons, -0.4));
+  state.SetComplexityN(state.range(0));
+}
+BENCHMARK(shrink_by_a_line)->Apply(over_points);
+
+/// A large disc of very short edges.
+void shrink_a_disc(benchmark::State& state) {
+  const auto points = static_cast<int>(state.range(0));
+  const Polygons disc = {{test::star(1, points, {256, 256}, 256.0, 256.0), {}}};
+  for (auto _ : state) benchmark::DoNotOptimize(offset(disc, -0.1));
+  state.SetComplexityN(state.range(0));
+}
+BENCHMARK(shrink_a_disc)
+    ->RangeMultiplier(4)
+    ->Range(1 << 10, 1 << 18)
+    ->Unit(benchmark::kMicrosecond)
+    ->Complexity();
+
+/// Two outlines that cross often, as those of neighbouring layers do.
+template <Polygons (*kOperation)(const Polygons&, const Polygons&)>
+void boolean(benchmark::State& state) {
+  const auto points = static_cast<int>(state.range(0));
+  const Polygons a = {{test::star(1, points, {50, 50}, 47.0, 50.0), {}}};
+  const Polygons b = {{test::star(2, points, {50, 50}, 47.0, 50.0), {}}};
+  for (auto _ : state) benchmark::DoNotOptimize(kOperation(a, b));
+  state.SetComplexityN(state.range(0));
+}
+BENCHMARK(boolean<unite>)->Apply(over_points);
+BENCHMARK(boolean<intersect>)->Apply(over_points);
+BENCHMARK(boolean<subtract>)->Apply(over_points);
+
+/// A plate with many holes: one outline, n holes of six corners.
+void shrink_a_grate(benchmark::State& state) {
+  std::vector<Ring> rings = {test::rectangle(0, 0, 500, 500)};
+  const auto side = static_cast<int>(state.range(0));
+  const double pitch = 500.0 / side;
+  for (int i = 0; i < side; ++i)
+    for (int k = 0; k < side; ++k)
+      rings.push_back(
+          test::star(1, 6, {(i + 0.5) * pitch, (k + 0.5) * pitch}, 0.35 * pitch, 0.35 * pitch));
+  const Polygons plate = polygons_from_rings(rings, FillRule::kEvenOdd);
+  for (auto _ : state) benchmark::DoNotOptimize(offset(plate, -0.2));
+  state.SetComplexityN(state.range(0) * state.range(0));
+}
+BENCHMARK(shrink_a_grate)
+    ->RangeMultiplier(2)
+    ->Range(4, 128)
+    ->Unit(benchmark::kMicrosecond)
+    ->Complexity();
+
+void find_all_skins(benchmark::State& state) {
+  const Model model = bench::sphere(1 << 14);
+  const Slices slices = slice_mesh(model.mesh, {}, model.spec);
+  for (auto _ : state) {
+    std::vector<Layer> layers = slices.layers;
+    find_solid(layers, static_cast<int>(state.range(0)));
+    benchmark::DoNotOptimize(layers);
+  }
+}
+BENCHMARK(find_all_skins)->Arg(1)->Arg(3)->Arg(10)->Unit(benchmark::kMillisecond);
+
+void find_skins_within_walls(benchmark::State& state) {
+  const Model model = bench::sphere(1 << 14);
+  const Slices slices = slice_mesh(model.mesh, {}, model.spec);
+  std::vector<Polygons> insides;
+  for (const Layer& layer : slices.layers) insides.push_back(offset(layer.polygons, -0.8));
+  for (auto _ : state) {
+    const SkinFinder finder(slices.layers, static_cast<int>(state.range(0)));
+    for (std::size_t i = 0; i < insides.size(); ++i)
+      benchmark::DoNotOptimize(finder.skins_in(insides[i], i));
+  }
+}
+BENCHMARK(find_skins_within_walls)->Arg(1)->Arg(3)->Arg(10)->Unit(benchmark::kMillisecond);
+
+}  // namespace
