@@ -91,7 +91,7 @@ class TablesTest(unittest.TestCase):
         self.assertGreater(len(keys), 40)
         missing = [key for key in keys if f"`{key}`" not in page]
         self.assertEqual(
-            missing, ["task", "printer", "run", "contender", "claim", "published"]
+            missing, ["task", "printer", "run", "claim", "published"]
         )
 
     def test_every_planner_and_parameter_is_explained(self) -> None:

@@ -79,14 +79,22 @@ function speedsOfLayer(route, place, printer, speeds) {
   }
 }
 
-/** A turn slighter than this is none. Coordinates here are rounded more coarsely than the judge's. */
-const STRAIGHT_SIN = 1e-3;
+/** A turn slighter than this is none. */
+const STRAIGHT_TURN = 1e-4;
+/** By how much a way may be off: places here are rounded more coarsely than the judge's. */
+const WAY_ERROR_MM = 1e-4;
 
-function goesStraightOn(before, after) {
+/** Angle by which the way turns, without what rounding may have added to it. */
+function turnOf(before, after) {
   const along = before[0] * after[0] + before[1] * after[1];
   const across = before[0] * after[1] - before[1] * after[0];
-  const lengths = Math.hypot(before[0], before[1]) * Math.hypot(after[0], after[1]);
-  return along > 0 && Math.abs(across) < STRAIGHT_SIN * lengths;
+  const doubt =
+    WAY_ERROR_MM * (1 / Math.hypot(before[0], before[1]) + 1 / Math.hypot(after[0], after[1]));
+  return Math.max(0, Math.abs(Math.atan2(across, along)) - doubt);
+}
+
+function goesStraightOn(before, after) {
+  return turnOf(before, after) < STRAIGHT_TURN;
 }
 
 /** Of every move the length of the straight stretch that it is a part of. */
@@ -132,6 +140,7 @@ function junction2(before, after, stretch, printer) {
   if (sinHalf >= 1) return Infinity;
   const accel = Number(printer.accel_mm_s2);
   const corner2 = (accel * Number(printer.junction_mm) * sinHalf) / (1 - sinHalf);
-  const isCurve = stretch < 1 && cosTurn > Math.SQRT1_2 && !goesStraightOn(before, after);
-  return isCurve ? Math.min(corner2, (accel * stretch) / Math.acos(cosTurn)) : corner2;
+  const turn = turnOf(before, after);
+  const isCurve = stretch < 1 && cosTurn > Math.SQRT1_2 && turn >= STRAIGHT_TURN;
+  return isCurve ? Math.min(corner2, (accel * stretch) / turn) : corner2;
 }
