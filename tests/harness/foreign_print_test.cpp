@@ -86,8 +86,10 @@ TEST(OwnPrint, AnIndependentScorerAgrees) {
   {
     std::ofstream out(file);
     GcodeWriter writer(out, task, Printer{}, {});
+    std::vector<RoutedLayer> layers;
     for (std::size_t i = 0; i < planned.size(); ++i)
-      writer.write_layer(model.sliced.layers[i], planned[i]);
+      layers.push_back({&model.sliced.layers[i], &planned[i]});
+    writer.write_layers(layers);
     writer.finish();
   }
   expect_agreement(file, Judge(task, Printer{}));
