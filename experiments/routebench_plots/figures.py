@@ -334,7 +334,11 @@ def _metric_figures(
     if _plans_again(results, setting):
         return
     cost, runtime = results.metric(_COST), results.metric(_RUNTIME)
-    if cost is not None and runtime is not None:
+    if (
+        cost is not None
+        and runtime is not None
+        and scatter.has_points(results, setting, runtime, cost)
+    ):
         words = f"{cost.label} against {in_sentence(runtime.label)}"
         yield Figure(
             f"scatter-{cost.name}-{runtime.name}{suffix}",
@@ -375,7 +379,11 @@ def _curve_figures(
         for name in _CURVES
         if (metric := results.metric(name)) is not None
     ]
-    if metrics:
+    valid = any(
+        results.slot(setting, model, contender).valid
+        for contender in results.contenders
+    )
+    if metrics and valid:
         title = _titled(f"Layers of {model.label}", setting)
         yield Figure(
             f"layers-{slug}{suffix}",

@@ -80,6 +80,13 @@ def draw(
     return sheet
 
 
+def has_points(
+    results: Results, setting: Item, x_metric: Metric, y_metric: Metric
+) -> bool:
+    """Whether any valid cell has both metrics."""
+    return bool(_points(results, setting, x_metric, y_metric, Tally()))
+
+
 def _points(
     results: Results,
     setting: Item,

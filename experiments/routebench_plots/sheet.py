@@ -143,7 +143,7 @@ class Sheet:
                 self.body.height / self.height,
             ),
             w_pad=0.03,
-            h_pad=0.03,
+            h_pad=0.08,
         )
         axes = self.figure.subplots(
             rows,

@@ -170,7 +170,8 @@ std::string_view to_string(StrokeKind kind) { return kKindNames[static_cast<std:
 Contender::Contender(ContenderSpec spec, const Registry& registry) : spec_(std::move(spec)) {
   if (!spec_.shell && !spec_.fill)
     throw Error(ErrorKind::kBadInput,
-                "contender " + spec_.name + ": it has no planner; give it a shell, a fill or both");
+                (spec_.name.empty() ? "the contender" : "contender " + spec_.name + ": it") +
+                    " has no planner; give it a shell, a fill or both");
   if (spec_.shell)
     shell_ = make_planner(*spec_.shell, PlannerRole::kShell, spec_.name, registry, shell_params_);
   if (spec_.fill)

@@ -119,6 +119,9 @@ void OutputSet::add_folder(const fs::path& folder) {
 }
 
 void OutputSet::add(const fs::path& file, const Write& write) {
+  if (file == "-")
+    throw Error(ErrorKind::kBadUsage,
+                "-: only --json writes to the standard output; give the name of a file");
   std::error_code error;
   const fs::file_status status = fs::status(file, error);
   if (fs::is_directory(status)) fail(file, "it is a folder");

@@ -82,11 +82,11 @@ void stand_in_for_refused(PlannerSet& planners, const ExperimentConfig& config) 
 PlannerSet load_planners(std::span<const std::string> plugin_files) {
   PlannerSet planners;
   register_builtin_planners(planners.registry);
-  for (const std::string& file : plugin_files) add_plugin(planners, file, true);
-  std::set<std::filesystem::path> seen;
+  std::set<std::filesystem::path> seen;  // a file that config and command line both name is one
   std::error_code error;
   for (const std::string& file : plugin_files)
-    seen.insert(std::filesystem::weakly_canonical(file, error));
+    if (seen.insert(std::filesystem::weakly_canonical(file, error)).second)
+      add_plugin(planners, file, true);
   for (const std::filesystem::path& folder : plugin_folders()) {
     planners.folders.push_back({folder.string(), std::filesystem::is_directory(folder, error)});
     for (const std::filesystem::path& file : plugin_files_in(folder))

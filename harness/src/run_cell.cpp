@@ -192,9 +192,9 @@ std::string execute_slicer(const Slicer& slicer, const CellWork& work, ChildProg
   if (!slicer.missing().empty())
     return encode(without_result(Outcome::kNotInstalled, slicer.missing()));
   const SlicedModel& sliced = work.model->sliced;
+  progress.phase = ChildProgress::kSlicing;
   if (!sliced.mesh)
     throw Error(ErrorKind::kBadInput, "a slicer needs a mesh, but the model is a file of layers");
-  progress.phase = ChildProgress::kSlicing;
   const SlicerRun run =
       slicer.run(load_model(sliced.spec, {.repair = work.repair}).mesh, work.judge->task(),
                  work.judge->printer(), work.scratch, work.memory_mb);
@@ -251,19 +251,14 @@ CellResult judge_cut(const CellWork& work, Cut made) {
     covered_mm2 += same ? area : area_mm2(intersect(own, wanted[i].polygons));
     outside_mm2 += same ? 0 : area_mm2(subtract(own, wanted[i].polygons));
   }
-  const double covered = covered_mm2 / wanted_mm2, spilled = outside_mm2 / wanted_mm2;
-  const GateLimits& gate = work.judge->task().gate;
   CellResult result;
-  result.outcome = Outcome::kValid;
-  if (covered < gate.covered_min || spilled > gate.spilled_max) {
-    result.outcome = Outcome::kOffTask;
-    result.reason = "its layers cover " + to_string(ParamValue(covered)) +
-                    " of the model's and exceed them by " + to_string(ParamValue(spilled));
-  }
   result.route_hash = hash_of_layers(made.layers);
   result.totals.resize(metric_table().size());
-  result.totals.at(metric_index("covered")) = covered;
-  result.totals.at(metric_index("spilled")) = spilled;
+  result.totals.at(metric_index("covered")) = covered_mm2 / wanted_mm2;
+  result.totals.at(metric_index("spilled")) = outside_mm2 / wanted_mm2;
+  Verdict verdict = work.judge->verdict(result.totals);
+  result.outcome = verdict.outcome;
+  result.reason = std::move(verdict.reason);
   result.totals.at(metric_index("peak_rss_bytes")) =
       static_cast<double>(made.timing.peak_rss_bytes);
   result.timing = std::move(made.timing);

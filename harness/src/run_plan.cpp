@@ -227,7 +227,7 @@ void make_ready(const ExperimentConfig& config, std::size_t place_in_config,
   }
   const ReadyModel& first = *before.front().second;
   plan.notes.push_back("sliced " + model.spec + ": " + std::to_string(first.record.layers) +
-                       " layers");
+                       (first.record.layers == 1 ? " layer" : " layers"));
   for (const std::string& warning : first.prepared.sliced.warnings)
     plan.notes.push_back("warning: " + model.spec + ": " + warning);
 }

@@ -131,6 +131,19 @@ class FilesTest(PlotTestCase):
         self.assertIn("bars-travel_mm-2", stems)
         self.assertEqual(len(set(stems)), len(stems))
 
+    def test_no_figure_without_anything_to_show(self) -> None:
+        failed = {(0, 0): ("failed", "broke"), (0, 1): ("failed", "broke")}
+        path = fill(self.folder / "f.sqlite", ["m", "n"], ["a", "b"], failures=failed, layers=2)
+        stems = self.stems(path, ["travel_mm"])
+        self.assertNotIn("layers-m", stems)
+        self.assertIn("layers-n", stems)
+        self.assertIn("scatter-travel_mm-plan_cpu_ns", stems)
+        path = fill(self.folder / "g.sqlite", ["m"], ["a", "b"], failures=failed, layers=2)
+        stems = self.stems(path, ["travel_mm"])
+        self.assertIn("outcomes", stems)
+        self.assertIn("routes-m-layer1", stems)
+        self.assertNotIn("scatter-travel_mm-plan_cpu_ns", stems)
+
     def test_all_metrics(self) -> None:
         stems = self.stems(self.database, ["all"])
         self.assertIn("bars-peak_rss_bytes", stems)

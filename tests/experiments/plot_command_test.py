@@ -72,7 +72,7 @@ class PlotCommandTest(unittest.TestCase):
         self.assert_refused(done, "absent: no results database here")
 
     def test_refuses_bad_usage(self) -> None:
-        self.assert_refused(self.run_program(self.program, "plot"), "results")
+        self.assert_refused(self.run_program(self.program, "plot"), "RESULTS is required")
         place = self.results("r")
         done = self.run_program(
             self.program, "plot", place, "--formats", "gif"

@@ -278,7 +278,7 @@ class CommandTest(PageTestCase):
         absent = str(self.folder / "absent")
         self.assert_refused(*self.run_program("report", absent), "no results database")
         self.assert_refused(*self.run_program("view", absent), "no such file")
-        self.assert_refused(*self.run_program("view"), "input")
+        self.assert_refused(*self.run_program("view"), "INPUT is required")
 
 
 class MarkdownTest(unittest.TestCase):

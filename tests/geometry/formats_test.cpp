@@ -320,6 +320,7 @@ TEST(Formats, FaultsAreNamedWithTheirPlace) {
            {"a.ply", "not a ply", "must begin with the word ply"},
            {"a.3mf", "not a zip", "must be a zip archive"},
            {"a.xyz", "hello", "neither STL nor OBJ, OFF, PLY or 3MF"},
+           {"a.wkt", "MULTIPOLYGON EMPTY", "a file of layers is no mesh"},
        }) {
     const ModelFile file(fault.name, fault.bytes);
     const std::string message = refusal_of(file.path());

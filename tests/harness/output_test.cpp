@@ -94,6 +94,15 @@ TEST_F(Output, AnOldFileStaysWholeUntilTheNewOneIs) {
   EXPECT_EQ(entries(), 1u);
 }
 
+TEST_F(Output, ADashIsNoFile) {
+  OutputSet outputs;
+  const auto text = saying("text");
+  EXPECT_NE(error_of([&] { outputs.add("-", text); }).find("the name of a file"),
+            std::string::npos);
+  outputs.commit();
+  EXPECT_FALSE(fs::exists("-"));
+}
+
 TEST_F(Output, AFullDiskIsAnErrorThatNamesTheFile) {
   if (!fs::exists("/dev/full")) GTEST_SKIP() << "no /dev/full on this system";
   OutputSet outputs;

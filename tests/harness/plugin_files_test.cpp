@@ -143,10 +143,16 @@ TEST_F(PluginFiles, TheUsersOwnFolderIsSearchedToo) {
 
 TEST_F(PluginFiles, AFileThatIsAskedForIsNotLookedAtAgain) {
   fs::copy_file(ROUTEBENCH_TOY_PLUGIN, folder_ / "toys.so");
-  const ProgramRun run = call({"planners", "--json", "--plugin", in_folder("./toys.so")});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
-  ASSERT_EQ(run.json()["plugins"].size(), 1U);
-  EXPECT_EQ(run.json()["plugins"][0]["by_name"], true);
+  for (const std::vector<std::string>& twice :
+       {std::vector<std::string>{}, {"--plugin", in_folder("toys.so")}}) {
+    std::vector<std::string> words{"planners", "--json", "--plugin", in_folder("./toys.so")};
+    words.insert(words.end(), twice.begin(), twice.end());
+    const ProgramRun run = call(words);
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    ASSERT_EQ(run.json()["plugins"].size(), 1U);
+    EXPECT_EQ(run.json()["plugins"][0]["by_name"], true);
+    EXPECT_EQ(run.json()["plugins"][0]["loaded"], true);
+  }
 }
 
 TEST_F(PluginFiles, ABadOneOnTheSearchPathIsAWarningElsewhere) {

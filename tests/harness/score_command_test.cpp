@@ -311,7 +311,8 @@ TEST_F(ScoreCommand, ExtrudedTravelsAreCaught) {
 }
 
 TEST_F(ScoreCommand, BadFilesAndBadUsageAreRefused) {
-  expect_refused({"score", in_folder("none.gcode")}, "none.gcode: cannot be opened");
+  expect_refused({"score", in_folder("none.gcode")},
+                 "none.gcode: cannot be opened: No such file or directory");
   expect_refused({"score", "/"}, "is a folder");
   expect_refused({"score"}, "FILE");
   expect_refused({"score", "/dev/null"}, "/dev/null: lays no material");

@@ -155,8 +155,21 @@ TEST_F(SlicerContender, AFileOfLayersHasNoMeshToSlice) {
   write("a.wkt", "MULTIPOLYGON Z (((0 0 0.1, 9 0 0.1, 9 9 0.1, 0 9 0.1, 0 0 0.1)))\n");
   write_script("any", "exit 9");
   EXPECT_EQ(run({{"any", command("./any {model} {gcode}")}}, "", "", "a.wkt").exit_code, 1);
-  EXPECT_TRUE(cells().at("any").reason.starts_with("a slicer needs a mesh"))
-      << cells().at("any").reason;
+  EXPECT_EQ(cells().at("any").reason, "a slicer needs a mesh, but the model is a file of layers");
+}
+
+TEST_F(SlicerContender, WaysOfSlicingAreJudgedInTheWordsOfTheGate) {
+  const std::string ways = "[[contender]]\nname = \"way\"\nslicing = [\"sweep\", \"voxel\"]\n";
+  EXPECT_EQ(run({}, "", ways, kModel).exit_code, 1);
+  const auto found = cells();
+  const StoredCell& sweep = found.at("way [slicing=sweep]");
+  EXPECT_EQ(sweep.outcome, Outcome::kValid) << sweep.reason;
+  EXPECT_EQ(metric(sweep, "covered"), 1);
+  EXPECT_EQ(metric(sweep, "spilled"), 0);
+  const StoredCell& voxel = found.at("way [slicing=voxel]");
+  EXPECT_EQ(voxel.outcome, Outcome::kOffTask);
+  EXPECT_TRUE(voxel.reason.starts_with("spilled 0.") && voxel.reason.ends_with(" > 0.02"))
+      << voxel.reason;
 }
 
 TEST_F(SlicerContender, NothingIsLeftBehind) {

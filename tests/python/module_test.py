@@ -149,6 +149,9 @@ class SameTest(FolderTest):
         )
         plan = routebench.plan(model, "greedy_shell", "rectilinear", layers=[4, 2, 4])
         self.assertEqual(plan.indices, [2, 4])
+        score = routebench.score(plan)
+        self.assertIn(score.outcome, repr(score))
+        self.assertNotIn("per_layer", repr(score), "what is printed stays short")
         few = routebench.score(plan, retract_over_mm=1e3).totals["retractions"]
         many = routebench.score(plan, retract_over_mm=0).totals["retractions"]
         self.assertEqual(few, 0)
@@ -329,12 +332,12 @@ class ResultsTest(FolderTest):
         self.assertEqual(len(timings), 4 * 2)
 
     def test_what_is_no_database_is_refused(self) -> None:
-        with self.assertRaisesRegex(ValueError, "no results database here"):
+        with self.assertRaisesRegex(routebench.Error, "no results database here"):
             routebench.read_results(self.folder)
         (self.folder / "results.sqlite").write_text("no database at all", encoding="utf-8")
-        with self.assertRaisesRegex(ValueError, "is no results database"):
+        with self.assertRaisesRegex(routebench.Error, "is no results database"):
             routebench.read_results(self.folder)
-        with self.assertRaisesRegex(ValueError, "must be one of wide, long, layers, timings"):
+        with self.assertRaisesRegex(routebench.Error, "must be one of wide, long, layers, timings"):
             routebench.read_results(self.folder, "broad")
 
     def test_without_pandas_it_says_so(self) -> None:

@@ -46,6 +46,9 @@ RawMesh read_mesh(std::span<const char> bytes, const ReadContext& context) {
   if (extension == ".3mf") refuse_model(context.name, "not a 3MF file: must be a zip archive");
   if (stl_kind(bytes) != StlKind::kNeither || extension == ".stl") return read_stl(bytes, context);
   if (is_obj_keyword(word)) return read_obj(bytes, context);
+  if (extension == ".wkt")
+    refuse_model(context.name,
+                 "a file of layers is no mesh: there is nothing to scale, simplify or slice");
   refuse_model(context.name, "not a mesh: neither STL nor OBJ, OFF, PLY or 3MF");
 }
 

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from . import planner
@@ -80,7 +80,7 @@ class Score:
     """Every limit that is missed, with the figure; empty if valid."""
     totals: dict[str, float | None]
     """Metrics of the whole; None where one does not apply."""
-    per_layer: list[dict[str, Any]]
+    per_layer: list[dict[str, Any]] = field(repr=False)
     """Metrics of each layer, with ``layer`` (its index), ``z_mm`` and ``repaired``."""
 
 

@@ -8,6 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from urllib.parse import quote
 
+from ._routebench import Error
+
 if TYPE_CHECKING:
     import pandas
 
@@ -54,10 +56,10 @@ def read_results(results: str | Path, form: str = "wide") -> pandas.DataFrame:
     Every row begins with what tells its cell from the others. All cells are there: those that are
     not valid have the reason in the wide form, and no place in a ranking.
 
-    Raises ImportError without pandas, ValueError for what is no results database.
+    Raises ImportError without pandas, Error for what is no results database.
     """
     if form not in FORMS:
-        raise ValueError(f"form is {form!r}; it must be one of {', '.join(FORMS)}")
+        raise Error(f"form is {form!r}; it must be one of {', '.join(FORMS)}")
     try:
         import pandas
     except ImportError as error:
@@ -97,7 +99,7 @@ def _parameters(variant_json: str) -> dict[str, Any]:
 def _file_of(results: Path) -> Path:
     file = results / "results.sqlite" if results.is_dir() else results
     if not file.is_file():
-        raise ValueError(
+        raise Error(
             f"{results}: no results database here; give the folder that 'routebench run' wrote, "
             "or its results.sqlite"
         )
@@ -115,10 +117,10 @@ class _Database:
             version = (found.fetchone() or ("(none)",))[0]
         except sqlite3.DatabaseError as error:
             self._connection.close()
-            raise ValueError(f"{file}: is no results database of routebench: {error}") from error
+            raise Error(f"{file}: is no results database of routebench: {error}") from error
         if version != SCHEMA_VERSION:
             self._connection.close()
-            raise ValueError(
+            raise Error(
                 f"{file}: has schema version {version}, but this reads {SCHEMA_VERSION}"
             )
 

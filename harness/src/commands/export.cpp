@@ -34,10 +34,11 @@ void run(const Arguments& arguments) {
 void add_export_command(CLI::App& app, int& exit_code) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App& command =
-      *app.add_subcommand("export", "write results as CSV files or for Planner Arena");
-  command.add_option("RESULTS", arguments->results, "a folder of results, or the database in it")
+      *app.add_subcommand("export", "Write results as CSV files or for Planner Arena");
+  command.add_option("RESULTS", arguments->results, "A folder of results, or the database in it")
+      ->type_name("")
       ->required();
-  command.add_option("--out", arguments->out, "where the files go [RESULTS/FORMAT]")
+  command.add_option("--out", arguments->out, "Where the files go [RESULTS/FORMAT]")
       ->type_name("DIR");
   arguments->format = "csv";
   command.add_option("--format", arguments->format, "csv or ompl")

@@ -38,32 +38,41 @@ std::vector<std::string> arguments_of(const GateOptions& options) {
 
 void add_gate_command(CLI::App& app, int& exit_code) {
   CLI::App* const command = app.add_subcommand(
-      "gate", "compare new results with old ones; exit code 1 if they are worse");
+      "gate", "Compare new results with old ones; exit code 1 if they are worse");
   const auto options = std::make_shared<GateOptions>();
-  command->add_option("old", options->before, "results to compare with: a folder or its database")
+  command->add_option("OLD", options->before, "Results to compare with: a folder or its database")
+      ->type_name("")
       ->required();
-  command->add_option("new", options->after, "results of the same experiment")->required();
-  command->add_option("--metrics", options->metrics,
-                      "metrics to compare, with commas between them, or all [those of interest]");
+  command->add_option("NEW", options->after, "Results of the same experiment")
+      ->type_name("")
+      ->required();
+  command
+      ->add_option("--metrics", options->metrics,
+                   "Metrics to compare, with commas between them, or all [those of interest]")
+      ->type_name("LIST");
   command
       ->add_option("--tolerance", options->tolerance,
-                   "by how much a cell's quality may become worse, as a share such as 1% or 0.01")
+                   "By how much a cell's quality may become worse, as a share such as 1% or 0.01")
+      ->type_name("SHARE")
       ->capture_default_str();
-  command->add_option("--travel", options->travel, "the same for travel alone");
-  command->add_option("--limit", options->limits, "METRIC=SHARE: the same for any metric")
+  command->add_option("--travel", options->travel, "The same for travel alone")->type_name("SHARE");
+  command->add_option("--limit", options->limits, "The same for any metric")
+      ->type_name("METRIC=SHARE")
       ->expected(1)
       ->take_all();
   command
       ->add_option("--time", options->time,
-                   "by how much times and memory may grow in the median over the models")
+                   "By how much times and memory may grow in the median over the models")
+      ->type_name("SHARE")
       ->capture_default_str();
   command
       ->add_option("--times", options->times,
-                   "whether to compare times: auto (if the processors are alike), always or never")
+                   "Whether to compare times: auto (if the processors are alike), always or never")
       ->check(CLI::IsMember({"auto", "always", "never"}))
+      ->type_name("WHEN")
       ->capture_default_str();
   command->add_flag("--require-all", options->require_all,
-                    "a cell of the old results that the new ones lack is a regression");
+                    "A cell of the old results that the new ones lack is a regression");
   command->callback([options, &exit_code] {
     exit_code = run_python_package("routebench_gate", arguments_of(*options));
   });

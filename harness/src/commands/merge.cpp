@@ -24,7 +24,8 @@ void merge(const Arguments& arguments) {
   const MergeSummary summary =
       merge_results(arguments.out, {arguments.parts.begin(), arguments.parts.end()},
                     arguments.fresh, command_line());
-  for (const std::string& remark : summary.remarks) std::cerr << "warning: " << remark << '\n';
+  for (const std::string& remark : summary.remarks)
+    std::cerr << "routebench: warning: " << remark << '\n';
   const std::vector<StoredCell> cells = current_cells(summary.file);
   write_to_stdout([&](std::ostream& out) {
     write_ranking(out, cells);
@@ -37,11 +38,14 @@ void merge(const Arguments& arguments) {
 void add_merge_command(CLI::App& app, int& exit_code) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App& command =
-      *app.add_subcommand("merge", "join databases of one experiment, such as its shards");
-  command.add_option("OUT", arguments->out, "folder of the new database")->required();
-  command.add_option("IN", arguments->parts, "folders of results, or the databases in them")
+      *app.add_subcommand("merge", "Join databases of one experiment, such as its shards");
+  command.add_option("OUT", arguments->out, "Folder of the new database")
+      ->type_name("")
       ->required();
-  command.add_flag("--fresh", arguments->fresh, "replace a database that OUT holds");
+  command.add_option("IN", arguments->parts, "Folders of results, or the databases in them")
+      ->type_name("")
+      ->required();
+  command.add_flag("--fresh", arguments->fresh, "Replace a database that OUT holds");
   command.footer(
       "Everything that the parts hold is in the new database: runs, cells, scores, routes, timing\n"
       "samples. A cell that several parts hold is stored once, with the samples of all of them. "

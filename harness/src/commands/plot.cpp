@@ -31,19 +31,26 @@ std::vector<std::string> arguments_of(const PlotOptions& options) {
 
 void add_plot_command(CLI::App& app, int& exit_code) {
   CLI::App* const command =
-      app.add_subcommand("plot", "draw figures and tables of an experiment's results");
+      app.add_subcommand("plot", "Draw figures and tables of an experiment's results");
   const auto options = std::make_shared<PlotOptions>();
-  command->add_option("results", options->results, "folder of a run, or the results.sqlite in it")
+  command->add_option("RESULTS", options->results, "Folder of a run, or the results.sqlite in it")
+      ->type_name("")
       ->required();
-  command->add_option("--out", options->out, "folder for the figures [RESULTS/plots]");
+  command->add_option("--out", options->out, "Folder for the figures [RESULTS/plots]")
+      ->type_name("DIR");
   command->add_option("--formats", options->formats, "png, svg and pdf, with commas between them")
+      ->type_name("LIST")
       ->capture_default_str();
-  command->add_option("--metrics", options->metrics,
-                      "metrics that get bars and table columns, with commas between them, or all "
-                      "[those of interest]");
-  command->add_option("--baseline", options->baseline,
-                      "contender that the summary compares the others with [the one valid on most "
-                      "models]");
+  command
+      ->add_option("--metrics", options->metrics,
+                   "Metrics that get bars and table columns, with commas between them, or all "
+                   "[those of interest]")
+      ->type_name("LIST");
+  command
+      ->add_option("--baseline", options->baseline,
+                   "Contender that the summary compares the others with [the one valid on most "
+                   "models]")
+      ->type_name("NAME");
   command->callback([options, &exit_code] {
     exit_code = run_python_package("routebench_plots", arguments_of(*options));
   });

@@ -32,14 +32,18 @@ std::vector<std::string> arguments_of(const char* command, const PageOptions& op
 
 void add_report_command(CLI::App& app, int& exit_code) {
   CLI::App* const command = app.add_subcommand(
-      "report", "write one HTML file with all of an experiment, and a viewer of its routes");
+      "report", "Write one HTML file with all of an experiment, and a viewer of its routes");
   const auto options = std::make_shared<PageOptions>();
-  command->add_option("results", options->input, "folder of a run, or the results.sqlite in it")
+  command->add_option("RESULTS", options->input, "Folder of a run, or the results.sqlite in it")
+      ->type_name("")
       ->required();
-  command->add_option("--out", options->out, "file to write [RESULTS/report.html]");
-  command->add_option("--baseline", options->baseline,
-                      "contender that the summary compares the others with [the one valid on most "
-                      "models]");
+  command->add_option("--out", options->out, "File to write [RESULTS/report.html]")
+      ->type_name("FILE");
+  command
+      ->add_option("--baseline", options->baseline,
+                   "Contender that the summary compares the others with [the one valid on most "
+                   "models]")
+      ->type_name("NAME");
   command->callback([options, &exit_code] {
     exit_code = run_python_package(kPackage, arguments_of("report", *options));
   });
@@ -47,15 +51,18 @@ void add_report_command(CLI::App& app, int& exit_code) {
 
 void add_view_command(CLI::App& app, int& exit_code) {
   CLI::App* const command = app.add_subcommand(
-      "view", "look at the moves of a G-code file, or of an experiment's routes, in a browser");
+      "view", "Look at the moves of a G-code file, or of an experiment's routes, in a browser");
   const auto options = std::make_shared<PageOptions>();
   command
-      ->add_option("input", options->input,
-                   "file of G-code, folder of a run, or the results.sqlite in it")
+      ->add_option("INPUT", options->input,
+                   "File of G-code, folder of a run, or the results.sqlite in it")
+      ->type_name("")
       ->required();
-  command->add_option("--out", options->out,
-                      "file to write [FILE.view.html beside the G-code, or RESULTS/view.html]");
-  command->add_flag("--no-open", options->no_open, "only write the file and print its name");
+  command
+      ->add_option("--out", options->out,
+                   "File to write [FILE.view.html beside the G-code, or RESULTS/view.html]")
+      ->type_name("FILE");
+  command->add_flag("--no-open", options->no_open, "Only write the file and print its name");
   command->callback([options, &exit_code] {
     exit_code = run_python_package(kPackage, arguments_of("view", *options));
   });

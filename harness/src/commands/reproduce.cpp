@@ -73,23 +73,24 @@ int reproduce(const Arguments& arguments) {
 void add_reproduce_command(CLI::App& app, int& exit_code) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App& command = *app.add_subcommand(
-      "reproduce", "execute an experiment again from its results and say what differs");
-  command.add_option("RESULTS", arguments->results, "a folder of results, or the database in it")
+      "reproduce", "Execute an experiment again from its results and say what differs");
+  command.add_option("RESULTS", arguments->results, "A folder of results, or the database in it")
+      ->type_name("")
       ->required();
-  command.add_option("--out", arguments->out, "folder of the new results [RESULTS/reproduction]")
+  command.add_option("--out", arguments->out, "Folder of the new results [RESULTS/reproduction]")
       ->type_name("DIR");
   command
       .add_option("--base", arguments->base,
-                  "where the config's relative paths begin [where they did]")
+                  "Where the config's relative paths begin [where they did]")
       ->type_name("DIR");
   command
       .add_option("--jobs,-j", arguments->jobs,
-                  "cells at a time; 0: one a core [as the config says]")
+                  "Cells at a time; 0: one a core [as the config says]")
       ->check(CLI::Range(0, 1024))
       ->type_name("N");
-  command.add_flag("--fresh", arguments->fresh, "replace an earlier reproduction");
+  command.add_flag("--fresh", arguments->fresh, "Replace an earlier reproduction");
   add_repeated(command, "--plugin", arguments->plugins, "FILE",
-               "plugins to load instead of the files that were loaded then");
+               "Plugins to load instead of the files that were loaded then");
   add_progress_option(command, arguments->progress);
   command.footer(
       "The config is the one that the database holds, and so are the cells. Outcomes, routes and\n"

@@ -123,29 +123,31 @@ int run(const Arguments& arguments) {
 
 void add_run_command(CLI::App& app, int& exit_code) {
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App& command = *app.add_subcommand("run", "execute an experiment and rank its contenders");
-  command.add_option("CONFIG", arguments->config, "the experiment, a TOML file")->required();
+  CLI::App& command = *app.add_subcommand("run", "Execute an experiment and rank its contenders");
+  command.add_option("CONFIG", arguments->config, "The experiment, a TOML file")
+      ->type_name("")
+      ->required();
   command
       .add_option("--out", arguments->out,
-                  "folder of the results [results/NAME; of a shard results/NAME-shard-I-of-N]")
+                  "Folder of the results [results/NAME; of a shard results/NAME-shard-I-of-N]")
       ->type_name("DIR");
   command
       .add_option("--jobs,-j", arguments->jobs,
-                  "cells at a time; 0: one a core [as the config says]")
+                  "Cells at a time; 0: one a core [as the config says]")
       ->check(CLI::Range(0, 1024))
       ->type_name("N");
   command.add_flag("--fresh", arguments->fresh,
-                   "start anew; replace old results when a new cell is done");
+                   "Start anew; replace old results when a new cell is done");
   command.add_flag("--dry-run", arguments->dry_run,
-                   "check, say what would be executed, write nothing");
-  command.add_flag("--repair", arguments->repair, "slice broken models, mark the layers concerned");
+                   "Check, say what would be executed, write nothing");
+  command.add_flag("--repair", arguments->repair, "Slice broken models, mark the layers concerned");
   add_plugin_option(command, arguments->plugins);
   add_repeated(command, "--only", arguments->only, "WHAT",
-               "execute only contender=NAME, model=SPEC or setting=LABEL (or a part of a label: "
+               "Execute only contender=NAME, model=SPEC or setting=LABEL (or a part of a label: "
                "setting=density=1)");
   command
       .add_option("--shard", arguments->shard,
-                  "execute every N-th cell, from the I-th on, into a database of its own; "
+                  "Execute every N-th cell, from the I-th on, into a database of its own; "
                   "routebench merge joins them")
       ->type_name("I/N");
   add_progress_option(command, arguments->progress);

@@ -1,3 +1,4 @@
+#include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -86,7 +87,9 @@ GcodePrint read_gcode_file(const std::filesystem::path& file, const GcodeOptions
   if (std::filesystem::is_directory(file, error))
     throw Error(ErrorKind::kBadInput, file.string() + ": is a folder, not a file of G-code");
   std::ifstream in(file, std::ios::binary);
-  if (!in) throw Error(ErrorKind::kBadInput, file.string() + ": cannot be opened");
+  if (!in)
+    throw Error(ErrorKind::kBadInput,
+                file.string() + ": cannot be opened: " + std::generic_category().message(errno));
   return read_gcode(in, file.string(), options);
 }
 
