@@ -27,6 +27,11 @@ enum class Order { kInsideOut, kOutsideIn, kAny };
 enum class Thin { kDrop, kDouble };
 enum class Gaps { kFill, kLeave };
 
+/// Sides of a wall nearer to each other than this share of a spacing: both of them would be more
+/// than a sixth too much material, and one line of the part's own width is still no wider than 1.6
+/// line widths.
+constexpr double kNearSides = 2.0 / 3;
+
 struct ShellParams {
   SearchKind search = SearchKind::kGrid;
   Chain chain = Chain::kGreedy;
@@ -48,8 +53,9 @@ struct ShellParams {
           {"any", Order::kAny}},
          "of an island's walls; any takes what is nearest, of any island");
     bind("thin", thin, {{"drop", Thin::kDrop}, {"double", Thin::kDouble}},
-         "where the two sides of a wall come nearer than half a spacing: no wall, or there and "
-         "back");
+         "where the two sides of a wall come nearer than two thirds of a spacing: no wall (gaps "
+         "then "
+         "lays one line), or there and back");
     bind("gaps", gaps, {{"fill", Gaps::kFill}, {"leave", Gaps::kLeave}},
          "parts and strips that are too narrow for a wall: a line of their own width along the "
          "middle, or nothing");
@@ -324,26 +330,28 @@ class GreedyShell final : public Planner {
   }
 
   [[nodiscard]] Island walls_of(const Polygon& polygon, const PlanContext& context) const {
-    const std::vector<Polygons> regions = wall_regions(polygon, context);
+    std::vector<Polygons> regions = wall_regions(polygon, context);
     Island island;
-    for (const Polygons& region : regions) {
+    for (Polygons& region : regions) {
       const bool innermost = &region == &regions.back();
       const bool twice =
           params_.small_twice && innermost && offset(region, -context.spacing_mm).empty();
       Pool pool;
-      for (const Ring& ring : rings_of(wide_enough(region, context))) pool.add(ring, twice);
+      if (params_.thin == Thin::kDrop)
+        region = without_thin_parts(region, kNearSides * context.spacing_mm);
+      for (const Ring& ring : rings_of(region)) pool.add(ring, twice);
       if (pool.size() > 0) island.pools.push_back(std::move(pool));
     }
     if (params_.order == Order::kInsideOut) std::reverse(island.pools.begin(), island.pools.end());
     if (params_.gaps == Gaps::kFill)
-      island.gaps =
-          gap_lines({polygon}, regions, context.perimeters, context.line_width_mm, context);
+      island.gaps = gap_lines({polygon}, regions, context.perimeters, widest_mm(context), context);
     return island;
   }
 
-  [[nodiscard]] Polygons wide_enough(const Polygons& region, const PlanContext& context) const {
-    return params_.thin == Thin::kDouble ? region
-                                         : without_thin_parts(region, context.spacing_mm / 2);
+  /// The widest place that no wall is laid in.
+  [[nodiscard]] double widest_mm(const PlanContext& context) const {
+    return context.line_width_mm +
+           (params_.thin == Thin::kDrop ? kNearSides * context.spacing_mm : 0);
   }
 
   void lay(const Pool& pool, const PlanContext& context, Point2& nozzle, Route& route) const {

@@ -146,11 +146,17 @@ TEST(GreedyShell, AnIslandIsFinishedBeforeTheNextOne) {
 
 TEST(GreedyShell, WallsTooThinForTwoBeadsAreDroppedOrLaidThereAndBack) {
   const Layer strip = layer_of({{test::rectangle(0, 0, 20, kWidth + 0.1), {}}});
-  EXPECT_TRUE(plan(strip, context_for(1), {{"thin", word("drop")}}).strokes.empty());
+  EXPECT_TRUE(plan(strip, context_for(1), {{"thin", word("drop")}, {"gaps", word("leave")}})
+                  .strokes.empty());
+  // In their place one line as wide as the strip, from end to end but for half its width.
+  const Route single = plan(strip, context_for(1), {{"thin", word("drop")}});
+  ASSERT_EQ(single.strokes.size(), 1U);
+  EXPECT_NEAR(single.strokes[0].width_mm, kWidth + 0.1, 0.02);
+  EXPECT_GT(length_mm(single), 20 - 2 * (kWidth + 0.1));
   const Route doubled = plan(strip, context_for(1), {{"thin", word("double")}});
   ASSERT_EQ(doubled.strokes.size(), 1U);
   EXPECT_NEAR(length_mm(doubled), 2 * (20 - kWidth) + 2 * 0.1, 1e-6);
-  const Layer wide = layer_of({{test::rectangle(0, 0, 20, kWidth + 0.6 * kSpacing), {}}});
+  const Layer wide = layer_of({{test::rectangle(0, 0, 20, kWidth + 0.7 * kSpacing), {}}});
   EXPECT_EQ(plan(wide, context_for(1), {{"thin", word("drop")}}).strokes.size(), 1U);
 }
 
