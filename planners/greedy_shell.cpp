@@ -28,8 +28,8 @@ enum class Thin { kDrop, kDouble };
 enum class Gaps { kFill, kLeave };
 
 /// Sides of a wall nearer to each other than this share of a spacing: both of them would be more
-/// than a sixth too much material, and one line of the part's own width is still no wider than 1.6
-/// line widths.
+/// than an eighth too much material (beads 0.45 mm wide, 0.2 mm high), and one line of the part's
+/// own width is still no wider than 1.6 line widths.
 constexpr double kNearSides = 2.0 / 3;
 
 struct ShellParams {
