@@ -232,6 +232,8 @@ class Concentric final : public Planner {
     return frame.from_frame(std::move(route));
   }
 
+  [[nodiscard]] int period_layers() const noexcept override { return 1; }
+
  private:
   ConcentricParams params_;
 };

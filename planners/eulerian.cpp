@@ -118,6 +118,8 @@ class Eulerian final : public Planner {
         {eulerian::nearest_entry_first(std::move(strokes), frame.start(), context)});
   }
 
+  [[nodiscard]] int period_layers() const noexcept override { return 2; }
+
  private:
   using Polylines = std::vector<std::vector<Point2>>;
 

@@ -310,6 +310,8 @@ class GreedyShell final : public Planner {
     return frame.from_frame(std::move(route));
   }
 
+  [[nodiscard]] int period_layers() const noexcept override { return 1; }
+
  private:
   [[nodiscard]] std::vector<Island> islands_of(const Polygons& polygons,
                                                const PlanContext& context) const {

@@ -161,6 +161,8 @@ class Rectilinear final : public Planner {
                                  : nearest_first(std::move(strokes), frame.start(), context)});
   }
 
+  [[nodiscard]] int period_layers() const noexcept override { return 2; }
+
  private:
   /// The regions without what is too narrow for two lines side by side: one line of its own width
   /// serves it better than a row of dots.

@@ -83,6 +83,8 @@ class Voxel final : public Planner {
     return frame.from_frame({nearest_first(std::move(strokes), frame.start(), context)});
   }
 
+  [[nodiscard]] int period_layers() const noexcept override { return 2; }
+
  private:
   [[nodiscard]] bool moves_inside() const { return params_.rim == Rim::kInside; }
 

@@ -1,6 +1,7 @@
 #include "routebench/geometry/simplify.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <utility>
 
@@ -39,6 +40,49 @@ std::vector<Point2> needed_points(const std::vector<Point2>& points,
   return kept;
 }
 
+/// The directions in which a straight side may leave a point and pass within the tolerance of all
+/// points that it skips.
+class Cone {
+ public:
+  Cone(Point2 apex, double tolerance_mm) : apex_(apex), tolerance_mm_(tolerance_mm) {}
+
+  /// Whether a side from the apex may end here.
+  [[nodiscard]] bool admits(Point2 p) const {
+    const Point2 way = p - apex_;
+    // What has been skipped must lie between the ends, so nothing may turn back.
+    return dot(way, way) >= squared_reach_ &&
+           (!is_narrowed_ || (cross(right_, way) >= 0 && cross(way, left_) >= 0));
+  }
+
+  /// From now on sides must pass this point, which the cone admits.
+  void narrow(Point2 p) {
+    const Point2 way = p - apex_;
+    squared_reach_ = dot(way, way);
+    if (squared_reach_ <= tolerance_mm_ * tolerance_mm_) return;  // near to any side
+    const Point2 aside = (tolerance_mm_ / std::sqrt(squared_reach_)) * Point2{-way.y, way.x};
+    const Point2 right = way - aside, left = way + aside;
+    if (!is_narrowed_ || cross(right_, right) > 0) right_ = right;
+    if (!is_narrowed_ || cross(left_, left) < 0) left_ = left;
+    is_narrowed_ = true;
+  }
+
+ private:
+  Point2 apex_;
+  double tolerance_mm_;
+  double squared_reach_ = 0;
+  bool is_narrowed_ = false;
+  Point2 right_, left_;  ///< the cone's sides, once it is narrowed
+};
+
+/// A corner of the ring's hull. In a direction as odd as this one no side of a drawing is upright,
+/// so noise does not decide which corner it is.
+std::size_t farthest_corner(const Ring& ring) {
+  constexpr Point2 kDirection{1, 0.3819660112501051};
+  const auto nearer = [&](Point2 a, Point2 b) { return dot(a, kDirection) < dot(b, kDirection); };
+  return static_cast<std::size_t>(std::max_element(ring.begin(), ring.end(), nearer) -
+                                  ring.begin());
+}
+
 }  // namespace
 
 std::vector<Point2> simplified(const std::vector<Point2>& points, double tolerance_mm) {
@@ -63,6 +107,23 @@ Ring simplified_ring(Ring ring, double tolerance_mm) {
   ring = needed_points(ring, needed);
   ring.pop_back();
   return ring;
+}
+
+Ring straightened_ring(const Ring& ring, double tolerance_mm) {
+  if (ring.size() < 3) return ring;
+  const std::size_t n = ring.size(), first = farthest_corner(ring);
+  const auto at = [&](std::size_t i) { return ring[first + i < n ? first + i : first + i - n]; };
+  Ring kept{at(0)};
+  Cone cone(at(0), tolerance_mm);
+  for (std::size_t i = 1; i <= n; ++i) {
+    const Point2 p = at(i == n ? 0 : i);
+    if (!cone.admits(p)) {
+      kept.push_back(at(i - 1));
+      cone = Cone(kept.back(), tolerance_mm);
+    }
+    cone.narrow(p);
+  }
+  return kept;
 }
 
 }  // namespace routebench

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "island_tree.hpp"
+#include "plan_memo.hpp"
 #include "plan_timing.hpp"
 #include "planner_process.hpp"
 #include "routebench/geometry/error.hpp"
@@ -77,8 +78,8 @@ std::string fault_of(const Route& route) {
 /// Puts one layer's route together, call by call.
 class LayerAssembly {
  public:
-  LayerAssembly(const Layer& layer, const Task& task, PlanContext context)
-      : layer_(layer), task_(task), context_(std::move(context)) {}
+  LayerAssembly(const Layer& layer, const Task& task, PlanContext context, PlanMemo* memo)
+      : layer_(layer), task_(task), context_(std::move(context)), memo_(memo) {}
 
   /// Has one planner lay a region from where the nozzle is, and appends its route.
   void lay(const Planner* planner, const std::string& name, StrokeKind kind, Polygons region) {
@@ -87,8 +88,7 @@ class LayerAssembly {
     const Layer part{layer_.index,      layer_.z_mm, layer_.height_mm,
                      std::move(region), {},          layer_.repaired};
     context_.density = kind == StrokeKind::kSparse ? task_.density : 1;
-    Route route = plan_part(*planner, name, part);
-    if (const std::string fault = fault_of(route); !fault.empty()) throw failure(name, fault);
+    Route route = known_or_planned(*planner, name, part);
     if (route.strokes.empty()) return;
     context_.start = route.strokes.back().points.back();
     planned_.kinds.insert(planned_.kinds.end(), route.strokes.size(), kind);
@@ -100,6 +100,17 @@ class LayerAssembly {
   [[nodiscard]] PlannedLayer take() { return std::move(planned_); }
 
  private:
+  Route known_or_planned(const Planner& planner, const std::string& name, const Layer& part) {
+    const bool may_be_known = memo_ != nullptr && planner.period_layers() > 0;
+    if (may_be_known)
+      if (std::optional<Route> known = memo_->find(planner, part, context_))
+        return *std::move(known);
+    Route route = plan_part(planner, name, part);
+    if (const std::string fault = fault_of(route); !fault.empty()) throw failure(name, fault);
+    if (may_be_known) memo_->keep(planner, part, context_, route);
+    return route;
+  }
+
   Route plan_part(const Planner& planner, const std::string& name, const Layer& part) {
     try {
       PlanTime time;
@@ -131,6 +142,7 @@ class LayerAssembly {
   const Layer& layer_;
   const Task& task_;
   PlanContext context_;
+  PlanMemo* memo_;
   PlannedLayer planned_;
 };
 
@@ -184,7 +196,8 @@ double Contender::peak_rss_bytes() const {
 }
 
 PlannedLayer Contender::plan(const Layer& layer, const Demand& demand, const Task& task,
-                             Point2 origin, std::uint64_t seed, std::stop_token stop) const {
+                             Point2 origin, std::uint64_t seed, std::stop_token stop,
+                             PlanMemo* memo) const {
   PlanContext context;
   context.start = task.start_mm;
   context.origin = origin;
@@ -193,7 +206,7 @@ PlannedLayer Contender::plan(const Layer& layer, const Demand& demand, const Tas
   context.perimeters = task.perimeters;
   context.seed = mixed_seed(seed, layer.index);
   context.stop = std::move(stop);
-  LayerAssembly assembly(layer, task, std::move(context));
+  LayerAssembly assembly(layer, task, std::move(context), memo);
 
   const std::string shell_name = spec_.shell ? spec_.shell->planner : std::string();
   const std::string fill_name = spec_.fill ? spec_.fill->planner : std::string();

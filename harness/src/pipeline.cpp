@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include "plan_memo.hpp"
 #include "routebench/geometry/error.hpp"
 #include "routebench/geometry/layer_io.hpp"
 #include "routebench/geometry/region.hpp"
@@ -17,6 +18,10 @@ namespace {
 
 /// Heights that were written as text and read back may differ by this much.
 constexpr double kHeightToleranceMm = 1e-6;
+
+/// Contours may be moved by this to have fewer points: far less than a printer can place, and a
+/// fifth of what offsets take for noise.
+constexpr double kStraightMm = 0.001;
 
 bool is_layer_file(const std::string& spec) {
   std::string extension = std::filesystem::path(spec).extension().string();
@@ -64,6 +69,7 @@ SlicedModel slice_mesh_model(const std::string& spec, const Task& task,
   const SliceOptions slicing{.layer_height_mm = task.layer_height_mm,
                              .method = options.method,
                              .repair = options.repair,
+                             .straight_mm = kStraightMm,
                              .cell_mm = options.cell_mm.value_or(task.line_width_mm)};
   if (options.method == SliceMethod::kVoxel && options.on_container)
     options.on_container(voxel_container(model.mesh, slicing, spec));
@@ -119,10 +125,15 @@ std::vector<Demand> demands_of(const SlicedModel& sliced, const Task& task,
   const std::vector<Layer>& layers = sliced.layers;
   const bool by_difference = task.skin_rule == SkinRule::kDifference && task.density < 1;
   const SkinFinder skins(layers, by_difference ? task.skin_layers : 0, parallel_for);
+  const std::vector<std::size_t> first = first_of_equal_layers(layers);
+  std::vector<Polygons> insides(layers.size());
+  parallel_for(layers.size(), [&](std::size_t i) {
+    if (first[i] == i) insides[i] = inside_of(layers[i], task);
+  });
   std::vector<Demand> demands(layers.size());
   parallel_for(layers.size(), [&](std::size_t i) {
     const bool is_dense = !layers[i].solid.empty();
-    demands[i] = demand_of(layers[i], task, [&](const Polygons& inside) {
+    demands[i] = demand_of(layers[i], task, insides[first[i]], [&](const Polygons& inside) {
       return is_dense ? inside : skins.skins_in(inside, i);
     });
   });
@@ -153,6 +164,23 @@ std::vector<PlannedLayer> plan_layers(const Contender& contender, const Prepared
   parallel_for(chosen.size(), [&](std::size_t i) {
     planned[i] = contender.plan(model.sliced.layers[chosen[i]], model.demands[chosen[i]], task,
                                 model.sliced.origin, seed, stop);
+  });
+  return planned;
+}
+
+std::vector<PlannedLayer> plan_job(const Contender& contender, const PreparedModel& model,
+                                   std::span<const std::size_t> chosen, const Task& task,
+                                   std::uint64_t seed, std::stop_token stop,
+                                   const ParallelFor& parallel_for) {
+  const std::vector<Layer>& layers = model.sliced.layers;
+  const std::vector<std::size_t> first = first_of_equal_layers(layers);
+  PlanMemo memo;
+  std::vector<PlannedLayer> planned(chosen.size());
+  parallel_for(chosen.size(), [&](std::size_t i) {
+    const std::size_t at = chosen[i];
+    const bool has_equals = first[at] != at || (at + 1 < layers.size() && first[at + 1] == at);
+    planned[i] = contender.plan(layers[at], model.demands[at], task, model.sliced.origin, seed,
+                                stop, has_equals ? &memo : nullptr);
   });
   return planned;
 }

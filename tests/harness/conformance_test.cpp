@@ -34,6 +34,7 @@ enum class Fault {
   kDependsOnThread,
   kStays,
   kDeaf,
+  kComesNotAgain,
   kLeavesOut
 };
 
@@ -70,6 +71,8 @@ class Rings final : public Planner {
     return route;
   }
 
+  [[nodiscard]] int period_layers() const noexcept override { return 2; }
+
  private:
   static void spoil(Route& route, const Layer& layer, const PlanContext& context) {
     static std::atomic<int> calls{0};
@@ -105,6 +108,9 @@ class Rings final : public Planner {
       }
       case Fault::kStays:
         if (layer.polygons.front().outer.front().x > 100) route.strokes.pop_back();
+        break;
+      case Fault::kComesNotAgain:
+        if (layer.index % 3 == 2) std::reverse(route.strokes.begin(), route.strokes.end());
         break;
       case Fault::kLeavesOut:
         route.strokes.pop_back();
@@ -156,6 +162,7 @@ TEST(Conformance, EveryFaultIsCaughtByItsCheck) {
   EXPECT_TRUE(checks_that_fail<Fault::kDependsOnThread>().contains("pure"));
   EXPECT_EQ(checks_that_fail<Fault::kStays>(), Names{"moves"});
   EXPECT_EQ(checks_that_fail<Fault::kDeaf>(), Names{"stops"});
+  EXPECT_EQ(checks_that_fail<Fault::kComesNotAgain>(), Names{"again"});
   EXPECT_EQ(checks_that_fail<Fault::kLeavesOut>(), Names{"task"});
 }
 

@@ -9,6 +9,7 @@
 
 #include "routebench/geometry/error.hpp"
 #include "routebench/geometry/region.hpp"
+#include "routebench/geometry/simplify.hpp"
 #include "slicing/chain_segments.hpp"
 #include "slicing/close_gaps.hpp"
 #include "slicing/cut_triangles.hpp"
@@ -39,6 +40,15 @@ std::string text(double value) {
 
 std::string name_of(const Layer& layer) {
   return "layer " + std::to_string(layer.index) + " (z = " + text(layer.z_mm) + " mm)";
+}
+
+/// A contour without the points where it runs straight on, most of which are cuts of diagonals of
+/// flat faces: half of all points of technical parts, and what makes equal layers differ.
+Ring straightened(const Ring& ring, double straight_mm) {
+  // Files round coordinates to about this. Noise goes first, so that it cannot decide which points
+  // of a curve are kept.
+  constexpr double kNoiseMm = 1e-5;
+  return straightened_ring(straightened_ring(ring, std::min(kNoiseMm, straight_mm)), straight_mm);
 }
 
 /// "1 gap", "2 gaps".
@@ -74,6 +84,9 @@ void check_options(const SliceOptions& options) {
   if (!(options.crack_mm >= 0 && std::isfinite(options.crack_mm)))
     throw Error(ErrorKind::kBadInput, "crack_mm = " + text(options.crack_mm) +
                                           ": must be a number of at least 0, for example 0.1");
+  if (!(options.straight_mm >= 0 && std::isfinite(options.straight_mm)))
+    throw Error(ErrorKind::kBadInput, "straight_mm = " + text(options.straight_mm) +
+                                          ": must be a number of at least 0, for example 0.001");
 }
 
 /// The planes below the highest vertex that belongs to a triangle.
@@ -248,6 +261,8 @@ Slices slice_mesh(const Mesh& mesh, const SliceOptions& options, const std::stri
       closings[i] = slicing::close_gaps(contours.open, options.crack_mm, contours.rings);
     layer.repaired = closings[i].widest_open_mm > 0;
     if (layer.repaired && !options.repair) return;  // refused below, lowest layer first
+    if (options.straight_mm > 0)
+      for (Ring& ring : contours.rings) ring = straightened(ring, options.straight_mm);
     // Where facets gape by a crack they also overlap by as much.
     layer.polygons =
         slicing::without_slivers(polygons_from_rings(std::move(contours.rings), FillRule::kNonZero),

@@ -59,13 +59,21 @@ std::size_t checked_reach(int skin_layers) {
 
 }  // namespace
 
+std::vector<std::size_t> first_of_equal_layers(const std::vector<Layer>& layers) {
+  std::vector<std::size_t> first(layers.size());
+  for (std::size_t i = 0; i < layers.size(); ++i)
+    first[i] = i > 0 && layers[i].polygons == layers[i - 1].polygons ? first[i - 1] : i;
+  return first;
+}
+
 struct SkinFinder::Impl {
   /// What overlays need of one layer; nothing if it is empty or does not fit on their grid.
   using Index = std::optional<overlay::RingIndex>;
 
   const std::vector<Layer>& layers;
   std::size_t reach;
-  std::vector<Index> indices;
+  std::vector<std::size_t> first;  ///< see first_of_equal_layers
+  std::vector<Index> indices;      ///< of those layers
 
   static Index index_of(const Polygons& polygons) {
     overlay::ToGrid grid;
@@ -78,11 +86,13 @@ struct SkinFinder::Impl {
 
 SkinFinder::SkinFinder(const std::vector<Layer>& layers, int skin_layers,
                        const ParallelFor& parallel_for)
-    : impl_(std::make_unique<Impl>(Impl{layers, checked_reach(skin_layers), {}})) {
+    : impl_(std::make_unique<Impl>(Impl{layers, checked_reach(skin_layers), {}, {}})) {
   impl_->indices.resize(layers.size());
   if (impl_->reach == 0) return;
-  parallel_for(layers.size(),
-               [&](std::size_t i) { impl_->indices[i] = Impl::index_of(layers[i].polygons); });
+  impl_->first = first_of_equal_layers(layers);
+  parallel_for(layers.size(), [&](std::size_t i) {
+    if (impl_->first[i] == i) impl_->indices[i] = Impl::index_of(layers[i].polygons);
+  });
 }
 
 SkinFinder::~SkinFinder() = default;
@@ -93,10 +103,13 @@ Polygons SkinFinder::skins_in(const Polygons& region, std::size_t layer) const {
   const std::size_t reach = impl_->reach, count = impl_->layers.size();
   if (reach == 0 || region.empty()) return {};
   if (layer < reach || layer + reach >= count) return region;
+  const std::vector<std::size_t>& first = impl_->first;
+  if (first[layer - reach] == first[layer + reach]) return {};
   Impl::Index own = Impl::index_of(region);
   Polygons common = region;
   const auto cut_by = [&](std::size_t other) {
-    const Impl::Index& index = impl_->indices[other];
+    if (first[other] == first[layer]) return;  // the region lies in its own layer
+    const Impl::Index& index = impl_->indices[first[other]];
     if (common.empty() || (own && index && index->holds_all_of(*own))) return;
     common = intersect(common, impl_->layers[other].polygons);
     own = Impl::index_of(common);

@@ -131,8 +131,10 @@ class Plan {
     Outcome outcome = Outcome::kFailed;
     std::string reason;
     try {
-      planned_ = plan_layers(std::get<Contender>(*source_), model_, chosen_, judge_.task(),
-                             arguments_.seed, {}, parallel_for_);
+      // Times are looked at only together with scores.
+      planned_ = (arguments_.no_judge ? plan_job : plan_layers)(std::get<Contender>(*source_),
+                                                                model_, chosen_, judge_.task(),
+                                                                arguments_.seed, {}, parallel_for_);
     } catch (const PlannerDied& death) {
       outcome = Outcome::kCrashed;
       reason = death.what();

@@ -236,6 +236,27 @@ std::optional<Seen> unmoved(const Trial& trial) {
               moved(std::move(there), Point2{-by.x, -by.y})};
 }
 
+std::optional<Seen> not_again(const Trial& trial) {
+  const int period = trial.planner.period_layers();
+  if (period == 0) return std::nullopt;
+  for (int first = 0; first < period; ++first) {
+    Layer layer = trial.layer;
+    layer.index = first;
+    PlanContext context = trial.context;
+    const Route route = trial.planner.plan(layer, context);
+    layer.index += period;
+    layer.z_mm += period * layer.height_mm;
+    ++context.seed;
+    Route again = trial.planner.plan(layer, context);
+    if (again != route)
+      return Seen{"it said that routes come again after " + std::to_string(period) +
+                      " layers, but those of layers " + std::to_string(first) + " and " +
+                      std::to_string(layer.index) + " differ",
+                  std::move(again)};
+  }
+  return std::nullopt;
+}
+
 std::optional<Seen> going_on(const Trial& trial) {
   Route route = trial.planner.plan(trial.layer, trial.context);
   if (route.strokes.empty()) return std::nullopt;
@@ -327,6 +348,8 @@ const std::vector<ConformanceCheck>& conformance_checks() {
       of_defaults("beads", "with default parameters beads stay inside the polygons", bead_outside),
       everywhere("pure", "equal arguments give an equal route, after other calls and on any thread",
                  impurity),
+      everywhere("again", "on equal layers routes come again after as many as period_layers says",
+                 not_again),
       everywhere("moves", "the route moves with layer, start and origin", unmoved),
       everywhere("stops", "planning ends soon when it is asked to", going_on),
       {"task", "with default parameters the gate passes layers that have room", task_not_done}};

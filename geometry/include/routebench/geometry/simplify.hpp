@@ -17,4 +17,10 @@ namespace routebench {
 /// are kept does not depend on where the ring begins, if it visits its smallest point once.
 [[nodiscard]] Ring simplified_ring(Ring ring, double tolerance_mm);
 
+/// A ring without points where it runs straight on: the others lie within tolerance_mm of the sides
+/// left. As simplified_ring but for the way: in one pass, from the ring's farthest point to the
+/// right, which is the one that it may not visit twice.
+/// Source   C. Williams, 1978 (cones).  Cost   linear.
+[[nodiscard]] Ring straightened_ring(const Ring& ring, double tolerance_mm);
+
 }  // namespace routebench

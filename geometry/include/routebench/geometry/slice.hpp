@@ -33,9 +33,10 @@ enum class SliceMethod {
 struct SliceOptions {
   double layer_height_mm = 0.2;
   SliceMethod method = SliceMethod::kBucket;
-  bool repair = false;    ///< close gaps wider than crack_mm too, and mark those layers
-  double crack_mm = 0.1;  ///< gaps up to this are closed without being asked, and counted
-  double cell_mm = 0.45;  ///< voxel: side of a cell in x and y; in z it is a layer high
+  bool repair = false;     ///< close gaps wider than crack_mm too, and mark those layers
+  double crack_mm = 0.1;   ///< gaps up to this are closed without being asked, and counted
+  double straight_mm = 0;  ///< contours may be moved by this to have fewer points; 0: are exact
+  double cell_mm = 0.45;   ///< voxel: side of a cell in x and y; in z it is a layer high
 };
 
 /// The container of SliceMethod::kVoxel.

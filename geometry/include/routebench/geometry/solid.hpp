@@ -21,6 +21,11 @@ namespace routebench {
 void find_solid(std::vector<Layer>& layers, int skin_layers,
                 const ParallelFor& parallel_for = serial_for);
 
+/// Technical parts have the same outline over many layers. For each layer the lowest one from which
+/// on, up to it, all have equal polygons; itself, if it differs from the one below.
+/// Cost   linear in vertices at most.
+[[nodiscard]] std::vector<std::size_t> first_of_equal_layers(const std::vector<Layer>& layers);
+
 /// Finds what find_solid finds, but only inside of given regions. Where a region lies clear of all
 /// air, as the inside of a steep wall does, that is seen without any Boolean operation.
 /// Immutable after construction; safe from any thread.

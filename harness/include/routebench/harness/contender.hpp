@@ -67,6 +67,8 @@ struct PlannedLayer {
   std::int64_t plan_cpu_ns = 0;
 };
 
+class PlanMemo;
+
 /// A contender of planners, ready to plan. Immutable; plan() may be called from any thread.
 class Contender {
  public:
@@ -84,9 +86,11 @@ class Contender {
   ///        coordinate that is not finite or a kilometre away, or a width that is
   ///        not positive or more than a metre.
   ///        std::bad_alloc passes as it is; PlannerDied, if a planner's own process has ended.
-  /// Cost   beside the planners' own near-linear in the layer's vertices.
+  /// Cost   beside the planners' own near-linear in the layer's vertices. With a memo, regions that
+  ///        it knows from other layers of the same job cost no planning.
   [[nodiscard]] PlannedLayer plan(const Layer& layer, const Demand& demand, const Task& task,
-                                  Point2 origin, std::uint64_t seed, std::stop_token stop) const;
+                                  Point2 origin, std::uint64_t seed, std::stop_token stop,
+                                  PlanMemo* memo = nullptr) const;
 
   /// The most memory that planning has taken so far: of this process, or of a planner's own process
   /// if that took more.

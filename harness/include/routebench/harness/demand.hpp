@@ -21,9 +21,12 @@ struct Demand {
 /// counts as sparse. At task.density = 1 all of the inside is dense.
 [[nodiscard]] Demand demand_of(const Layer& layer, const Task& task);
 
-/// As above, with skins from elsewhere than Layer::solid: `skins_in` is asked once, for those in
-/// the layer's inside.
-[[nodiscard]] Demand demand_of(const Layer& layer, const Task& task,
+/// Demand::inside of a layer: what the walls leave.
+[[nodiscard]] Polygons inside_of(const Layer& layer, const Task& task);
+
+/// As demand_of above, where inside_of is known already, with skins from elsewhere than
+/// Layer::solid: `skins_in` is asked once, for those in the layer's inside.
+[[nodiscard]] Demand demand_of(const Layer& layer, const Task& task, Polygons inside,
                                const std::function<Polygons(const Polygons& inside)>& skins_in);
 
 }  // namespace routebench

@@ -128,6 +128,13 @@ struct PreparedModel {
     const Contender& contender, const PreparedModel& model, std::span<const std::size_t> chosen,
     const Task& task, std::uint64_t seed, std::stop_token stop, const ParallelFor& parallel_for);
 
+/// Plans the chosen layers of a whole job, in which no one asks how long each took: regions that
+/// come again on equal layers are planned once (see Planner::period_layers).
+/// Takes, returns and throws what plan_layers does, but for times, which are those spent.
+[[nodiscard]] std::vector<PlannedLayer> plan_job(
+    const Contender& contender, const PreparedModel& model, std::span<const std::size_t> chosen,
+    const Task& task, std::uint64_t seed, std::stop_token stop, const ParallelFor& parallel_for);
+
 /// A cell's scores.
 struct JudgedCell {
   std::vector<LayerScore> layers;  ///< with plan_wall_ns and plan_cpu_ns

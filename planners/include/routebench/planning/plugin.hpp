@@ -15,7 +15,7 @@
 namespace routebench {
 
 /// Grows whenever a type that crosses the border between program and plugin changes.
-inline constexpr int kPluginAbi = 2;
+inline constexpr int kPluginAbi = 3;
 
 /// Standard library, its ABI flag and debug containers, language level: what must agree between
 /// program and plugin because C++ types cross the border.
