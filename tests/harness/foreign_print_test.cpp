@@ -3,11 +3,15 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cstdint>
 #include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <random>
 #include <string>
 
+#include "gcode_texts.hpp"
 #include "routebench/harness/gcode_score.hpp"
 #include "routebench/harness/gcode_writer.hpp"
 #include "routebench/harness/parallel.hpp"
@@ -93,6 +97,59 @@ TEST(OwnPrint, AnIndependentScorerAgrees) {
     writer.finish();
   }
   expect_agreement(file, Judge(task, Printer{}));
+}
+
+/// Walks on a grid in layers of 0.3 mm, as programs of researchers write them: no marks, no speeds,
+/// no start, E the way that was printed. Here and there the nozzle goes elsewhere with the filament
+/// pulled back.
+std::string walks_on_a_grid(std::uint64_t seed) {
+  constexpr double kStepMm = 0.75;
+  constexpr int kLayers = 40, kSteps = 300, kHalfSize = 13;
+  constexpr std::array<std::array<int, 2>, 4> kWays = {{{1, 0}, {0, 1}, {-1, 0}, {0, -1}}};
+  std::mt19937_64 random(seed);
+  std::uniform_int_distribution<int> anywhere(-kHalfSize, kHalfSize), way(0, 3), chance(0, 49);
+  int x = anywhere(random), y = anywhere(random);
+  double e_mm = 0;
+  bool printed = false;  // since the filament was pulled back
+  std::string text = "; a walk\n";
+  const auto go = [&](double e) {
+    text += "G1 X" + test::number(x * kStepMm) + " Y" + test::number(y * kStepMm) + " E" +
+            test::number(e) + "\n";
+  };
+  for (int layer = 1; layer <= kLayers; ++layer) {
+    text += "G1 Z" + test::number(layer * 3 / 10.0) + "\n";
+    go(e_mm);
+    for (int step = 0; step < kSteps; ++step) {
+      if (printed && chance(random) == 0) {
+        printed = false;
+        text += "G1 E" + test::number(e_mm - 1) + "\n";
+        x = anywhere(random);
+        y = anywhere(random);
+        go(e_mm - 1);
+        text += "G1 E" + test::number(e_mm) + "\n";
+        continue;
+      }
+      const auto [dx, dy] = kWays.at(static_cast<std::size_t>(way(random)));
+      if (std::abs(x + dx) > kHalfSize || std::abs(y + dy) > kHalfSize) continue;
+      x += dx;
+      y += dy;
+      go(e_mm += kStepMm);
+      printed = true;
+    }
+  }
+  return text;
+}
+
+TEST(UnmarkedPrint, AnIndependentScorerAgrees) {
+  const ScratchDir dir;
+  Task task;
+  task.layer_height_mm = 0.3;
+  const std::filesystem::path file = dir.path() / "walk.gcode";
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    std::ofstream(file) << walks_on_a_grid(seed);
+    SCOPED_TRACE(seed);
+    expect_agreement(file, Judge(task, Printer{}));
+  }
 }
 
 /// The look-ahead model against another program's, on its own G-code.

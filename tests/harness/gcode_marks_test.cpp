@@ -125,6 +125,47 @@ TEST(GcodeReader, TheHeightOfALayerIsItsMarkOrItsStep) {
   expect(kStart + ";HEIGHT:0.3\n" + lines, {0.3, 0.3, 0.3});
 }
 
+TEST(GcodeReader, EquallyHighLayersAreReadEquallyHighOrTheWarningCountsThem) {
+  constexpr int kLayers = 40;
+  constexpr double kExpectedMm = GcodeOptions{}.layer_height_mm;
+  for (int hundredths = 4; hundredths <= 80; ++hundredths) {
+    // Z as the shortest text of a sum, as a program without slicer's marks writes it.
+    const double height_mm = hundredths / 100.0;
+    std::string text = "M83\nG28\n";
+    for (int i = 1; i <= kLayers; ++i)
+      text +=
+          "G1 Z" + number(i * hundredths / 100.0) + "\nG1 X" + (i % 2 == 0 ? "0" : "9") + " E1\n";
+    const GcodePrint print = read_text(text);
+    ASSERT_EQ(print.layers.size(), kLayers);
+    const bool told = hundredths <= 30;
+    for (const GcodeLayer& layer : print.layers)
+      EXPECT_NEAR(layer.height_mm, told ? height_mm : kExpectedMm, 1e-9)
+          << height_mm << ' ' << layer.z_mm;
+    std::vector<std::string> warnings;
+    if (!told)
+      warnings.push_back(
+          "the steps of Z do not tell the height of 40 of 40 layers, the first at z = " +
+          to_string(ParamValue(height_mm)) + " mm: it is taken from layer_height_mm = 0.2");
+    warnings.emplace_back("no type marks: all strokes count as part of the model");
+    EXPECT_EQ(print.warnings, warnings) << height_mm;
+  }
+}
+
+TEST(GcodeReader, ALowestLayerWithoutAStepIsAsHighAsExpected) {
+  // Some programs write the lower side of a layer.
+  const GcodePrint print =
+      read_text("M83\nG28\nG1 Z0.0\nG1 X9 E1\nG1 Z0.3\nG1 X0 E1\n", {.layer_height_mm = 0.3});
+  ASSERT_EQ(print.layers.size(), 2u);
+  EXPECT_EQ(print.layers[0].height_mm, 0.3);
+  EXPECT_EQ(print.layers[1].height_mm, 0.3);
+  EXPECT_EQ(print.warnings.at(0),
+            "the steps of Z do not tell the height of 1 of 2 layers, the first at z = 0 mm: "
+            "it is taken from layer_height_mm = 0.3");
+  // A gap further up needs no warning.
+  EXPECT_EQ(read_text(kStart + "G1 X9 E1\nG1 Z0.4\nG1 X0 E1\nG1 Z3\nG1 X9 E1\n").warnings.size(),
+            1u);
+}
+
 TEST(GcodeReader, TypesTellWhatIsPartOfTheModel) {
   const GcodePrint print = read_text(
       kStart +

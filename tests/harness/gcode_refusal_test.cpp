@@ -76,11 +76,14 @@ TEST(GcodeReader, MalformedInputIsRefusedWithItsLine) {
 
 TEST(GcodeReader, MaterialNeedsAPlace) {
   EXPECT_EQ(refusal("M83\nG1 X1 E1\n"),
-            "a.gcode:2: material is laid before any move has said where X is");
+            "a.gcode:2: material is laid before any move has said where X is: "
+            "a travel, G28 or G92 has to come first");
   EXPECT_EQ(refusal("M83\nG0 X1 Y1\nG1 X2 E1\n"),
-            "a.gcode:3: material is laid before any move has said where Z is");
+            "a.gcode:3: material is laid before any move has said where Z is: "
+            "a travel, G28 or G92 has to come first");
   EXPECT_EQ(refusal("M83\nG91\nG0 X1 Y1 Z1\nG1 X2 E1\n"),
-            "a.gcode:4: material is laid before any move has said where X is");
+            "a.gcode:4: material is laid before any move has said where X is: "
+            "a travel, G28 or G92 has to come first");
   EXPECT_EQ(refusal("G2 X1 Y1 I1\n"), "a.gcode:1: an arc begins at an unknown place");
 }
 

@@ -201,7 +201,8 @@ void Machine::go(const std::vector<Point2>& points, const std::array<Axis, 3>& f
   for (std::size_t axis = 0; axis < axes_.size(); ++axis)
     if (!from[axis].known)
       place.refuse("material is laid before any move has said where " +
-                   std::string(1, kAxisWords[axis]) + " is");
+                   std::string(1, kAxisWords[axis]) +
+                   " is: a travel, G28 or G92 has to come first");
   const double climb_mm = axes_[kZ].mm - from[kZ].mm;
   Bead bead{start, start, from[kZ].mm, from[kZ].mm, {}};
   double gone = 0;

@@ -186,14 +186,23 @@ double PrintBuilder::volume_mm3(const Filament& filament) const {
 }
 
 void PrintBuilder::set_heights() {
-  // A step that is much larger than a layer spans a gap between parts.
+  // A step that is much larger than a layer spans a gap between parts. Layers of just that height,
+  // such as 0.3 mm where 0.2 mm is expected, must not be told apart by the rounding of their z.
   constexpr double kHighest = 1.5;
+  const double highest_mm = kHighest * options_.layer_height_mm + kSameHeightMm;
   double below_mm = 0;
   for (RawLayer& layer : layers_) {
-    const double step_mm = layer.z_mm - below_mm;
-    const bool plain = step_mm > kLevelMm && step_mm <= kHighest * options_.layer_height_mm;
-    layer.layer.height_mm = layer.height_mm.value_or(plain ? step_mm : options_.layer_height_mm);
-    layer.layer.z_mm = below_mm = layer.z_mm;
+    const double step_mm = layer.z_mm - std::exchange(below_mm, layer.z_mm);
+    layer.layer.z_mm = layer.z_mm;
+    if (layer.height_mm) {
+      layer.layer.height_mm = *layer.height_mm;
+    } else if (step_mm > kLevelMm && step_mm <= highest_mm) {
+      layer.layer.height_mm = step_mm;
+    } else {
+      layer.layer.height_mm = options_.layer_height_mm;
+      if (guessed_heights_++ == 0) first_guessed_z_mm_ = layer.z_mm;
+      if (&layer == &layers_.front()) guesses_bed_layer_ = true;
+    }
   }
 }
 
@@ -217,6 +226,13 @@ void PrintBuilder::warn() {
   if (returned_)
     warnings.emplace_back(
         "goes back to lower layers (parts printed one by one?); it is judged layer by layer");
+  // Gaps here and there do no harm: the other layers show what height is usual.
+  if (guesses_bed_layer_ || 2 * guessed_heights_ > layers_.size())
+    warnings.push_back("the steps of Z do not tell the height of " +
+                       std::to_string(guessed_heights_) + " of " + std::to_string(layers_.size()) +
+                       " layers, the first at z = " + to_string(ParamValue(first_guessed_z_mm_)) +
+                       " mm: it is taken from layer_height_mm = " +
+                       to_string(ParamValue(options_.layer_height_mm)));
   for (const auto& [name, count] : unknown_)
     warnings.push_back("unknown type '" + name + "', " + std::to_string(count) +
                        " times; its strokes count as part of the model");

@@ -97,6 +97,9 @@ class PrintBuilder {
   bool climbing_ = false;                   ///< the last bead was part of a spiral and may go on
   std::optional<double> spiral_from_z_mm_;  ///< where the layer began, if it is a spiral
   bool returned_ = false;                   ///< to a lower layer
+  std::size_t guessed_heights_ = 0;         ///< layers that are as high as the options say
+  double first_guessed_z_mm_ = 0;
+  bool guesses_bed_layer_ = false;  ///< the lowest one is among them
   StrokeType type_;
   std::optional<double> width_mark_mm_;
   std::optional<double> height_mark_mm_;        ///< of the strokes

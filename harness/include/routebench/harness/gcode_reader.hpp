@@ -75,7 +75,9 @@ struct GcodePrint {
 /// Layers are heights at which material is laid. Material within 0.005 mm of a layer belongs to it,
 /// also when the nozzle comes back later; then a warning says so. Where Z climbs while material is
 /// laid (a spiral), a layer lasts until the next layer mark, without marks until it has climbed by
-/// a layer height; its z is the highest point.
+/// a layer height; its z is the highest point. Without `;HEIGHT:` a layer is as high as its step
+/// from the layer below or the bed, up to 1.5 layer heights of the options; else as high as those
+/// say. A warning tells so if that goes for the lowest layer or for more than half of them.
 ///
 /// What is no part of the model is left out and counted: strokes of the types skirt, brim,
 /// support, raft, prime or wipe tower, shield and custom code, and all that comes before the first
