@@ -44,6 +44,7 @@ int reproduce(const Arguments& arguments) {
   const Reproduction again = read_reproduction(original, base);
   const PlannerSet planners = load_planners_for(
       again.config, arguments.plugins.empty() ? again.plugins : arguments.plugins);
+  print_refused(planners);
 
   RunnerOptions options;
   options.out = arguments.out.empty() ? original.parent_path() / "reproduction"
