@@ -11,14 +11,14 @@ import math
 import sqlite3
 import statistics
 from collections import Counter, defaultdict
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
 from .errors import PlotError
-from .naming import distinct_labels, printable
+from .naming import distinct_labels, printable, short_specs
 
 SCHEMA_VERSION = "2"
 DATABASE_NAME = "results.sqlite"
@@ -396,13 +396,20 @@ class Results:
         )
         return tuple(Metric(*map(str, row)) for row in rows)
 
-    def _read_items(self, table: str, columns: str) -> tuple[Item, ...]:
-        """The rows of a table that a cell of the last run refers to."""
+    def _read_items(
+        self, table: str, columns: str, names: Mapping[str, str] | None = None
+    ) -> tuple[Item, ...]:
+        """The rows of a table that a cell of the last run refers to.
+
+        `names` says what is to be shown in place of the first column.
+        """
         rows = self._query(
             f"SELECT {table}_id, {columns} FROM {table} WHERE {table}_id IN "
             f"(SELECT {table}_id FROM current_cell) ORDER BY {table}_id"
         )
-        labels = distinct_labels([(str(r[1]), str(r[2])) for r in rows])
+        labels = distinct_labels(
+            [((names or {}).get(str(r[1]), str(r[1])), str(r[2])) for r in rows]
+        )
         return tuple(Item(int(r[0]), text) for r, text in zip(rows, labels))
 
     def _read_models(
@@ -413,8 +420,11 @@ class Results:
         Tasks that want other layers or skins cut the same file anew: these
         rows are one model, as long as no setting has two of them.
         """
-        items = self._read_items("model", "spec, mesh_hash || layers_hash")
         specs = dict(self._query("SELECT model_id, spec FROM model"))
+        names = short_specs(specs[model] for _, model, _ in self._slots)
+        items = self._read_items(
+            "model", "spec, mesh_hash || layers_hash", names
+        )
         used: dict[str, dict[int, set[int]]] = defaultdict(
             lambda: defaultdict(set)
         )
@@ -429,7 +439,7 @@ class Results:
                 first = min(m for found in by_setting.values() for m in found)
                 if item.row_id != first:
                     continue
-                item = Item(first, printable(spec))
+                item = Item(first, printable(names[spec]))
                 for setting, found in by_setting.items():
                     rows[setting, first] = next(iter(found))
             else:
