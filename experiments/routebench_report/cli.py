@@ -11,9 +11,10 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from routebench_plots.console import EXIT_DONE, Parser, guarded, write_out
+from routebench_plots.database import DATABASE_NAME, find_database
 from routebench_plots.errors import PlotError
 from routebench_plots.naming import printable
-from routebench_plots.results import DATABASE_NAME, Results, find_database
+from routebench_plots.results import Results
 from routebench_plots.terminal import progress
 
 from . import content, sections
