@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import sqlite3
 import unittest
+from contextlib import closing
 from pathlib import Path
 from typing import ClassVar
 
@@ -289,6 +291,27 @@ class KeptTest(BrowserTestCase):
         self.open(page, link(a="lines", layer=5))
         self.assertIn("layer 5 was not kept", self.viewer("message"))
         self.assertEqual(self.layer(), 3)
+
+
+class PhoneTest(BrowserTestCase):
+    """A narrow screen."""
+
+    def test_nothing_is_wider_than_the_screen(self) -> None:
+        results = stack(self.folder)
+        with closing(sqlite3.connect(results / "results.sqlite")) as database, database:
+            database.execute(
+                "UPDATE setting SET task_json = json_set(task_json, '$.x', ?)", ("x " * 99,)
+            )
+        page = make("report", results, self.folder / "report.html")
+        self.browser.become_a_phone()
+        self.open(page)
+        for section in self.browser.run(
+            "for (const one of document.querySelectorAll('details')) one.open = true;"
+            "return [...document.querySelectorAll('section')].map(s => [s.id, s.scrollWidth]);"
+        ):
+            self.assertLessEqual(section[1], 390, section)
+        self.assertEqual(self.browser.value("innerWidth"), 390)
+        self.assert_drawn(self.picture())
 
 
 class MillionTest(BrowserTestCase):

@@ -22,8 +22,6 @@
 namespace routebench {
 namespace {
 
-constexpr int kExitNotValid = 1;
-
 struct PlanArguments {
   std::string model;
   std::string shell;
