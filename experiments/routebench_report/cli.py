@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import os
+import re
 import shutil
 import subprocess
 import tempfile
@@ -21,6 +22,7 @@ from . import content, sections
 from .page import page, viewer_section
 
 _SQLITE_HEAD = b"SQLite format 3\0"
+_MOVE = re.compile(r"^\s*(?:N\d+\s*)?G0*[0-3](?!\d)", re.MULTILINE | re.IGNORECASE)
 _SCREENS = ("DISPLAY", "WAYLAND_DISPLAY")
 
 
@@ -102,6 +104,11 @@ def _gcode_view(file: Path) -> str:
             f"file of G-code, a folder of results, or its {DATABASE_NAME}"
         )
     text = data.decode("utf-8", errors="replace")
+    if not _MOVE.search(text):
+        raise PlotError(
+            f"{file}: neither G-code nor results: no line of it is a move; give a file of "
+            f"G-code, a folder of results, or its {DATABASE_NAME}"
+        )
     name = printable(file.name)
     return page(content.gcode_content(name, text), [viewer_section()])
 

@@ -233,6 +233,15 @@ class ViewTest(PageTestCase):
         self.assertIn("viewer", outline.ids())
         self.assertNotIn("table", outline.ids())
 
+    def test_refuses_what_moves_nothing(self) -> None:
+        file = self.folder / "notes.txt"
+        for text in ("", "name = 'a'\n[task]\n", "dear diary\nG28\nG100 X1\n"):
+            file.write_text(text)
+            self.assert_refused(*self.call("view", "--no-open", str(file)), "no line of it is a move")
+        self.assertEqual([path.name for path in self.folder.iterdir()], ["notes.txt"])
+        file.write_text("n1 g01x3\n")
+        self.assertEqual(self.call("view", "--no-open", str(file))[0], 0)
+
     def test_refuses_what_is_binary(self) -> None:
         file = self.folder / "part.stl"
         file.write_bytes(b"\0" * 200)

@@ -287,6 +287,7 @@ TEST_F(PlanCommand, BadUsageIsOneLineThatHelps) {
   with_fill({"--order", "isle"}, "it is island or stage");
   with_fill({"--plugin", "/no/such/plugin.so"}, "plugin /no/such/plugin.so: refused: ");
   with_fill({"--jobs", "many"}, "--jobs");
+  with_fill({"--seed", "-1"}, "--seed");
   with_fill({"--shel", "greedy_shell"}, "did you mean '--shell'?");
   expect_refused({"plan", in_folder("missing.stl"), "--fill", "rectilinear"}, "missing.stl");
   expect_refused({"plan", in_folder("missing.wkt"), "--fill", "rectilinear"}, "missing.wkt");

@@ -4,6 +4,7 @@
 #include <ostream>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "layer_files/read_polygons.hpp"
@@ -269,6 +270,9 @@ void write_wkt(std::ostream& out, const std::vector<Layer>& layers) {
 
 std::vector<Layer> read_wkt(const std::filesystem::path& file, double layer_height_mm,
                             std::vector<std::string>* warnings) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(file, ignored))
+    throw Error(ErrorKind::kBadInput, file.string() + ": is a folder, not a file of layers");
   const std::string text = layer_files::read_file(file);
   WktReader reader(text, file.string(), layer_height_mm);
   std::vector<Layer> layers = reader.read();
