@@ -7,8 +7,9 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from routebench_plots.console import EXIT_DONE, Parser, guarded, write_out
+from routebench_plots.database import find_database
 from routebench_plots.errors import PlotError
-from routebench_plots.results import Results, find_database
+from routebench_plots.results import Results
 
 from .compare import compare
 from .limits import Limits, metrics_of, parse_share

@@ -17,12 +17,11 @@ _MOST_LINES = 20
 
 def to_markdown(made: Comparison, old: Results, new: Results, missing_fails: bool) -> str:
     """What became worse first, then what changed, then what could not be compared."""
-    number = regressions(made, missing_fails)
-    head = f"{counted(number, 'regression')}" if number else "no regression"
     lines = [
-        f"## {markdown_text(new.experiment)}: {head}",
+        _headline(made, missing_fails),
         "",
-        f"{_run_text(old)} → {_run_text(new)}. {counted(made.paired, 'cell')} compared"
+        f"{markdown_text(new.experiment)}, {_run_text(old)} → {_run_text(new)}: "
+        f"{counted(made.paired, 'cell')} compared"
         + (f", {len(made.missing)} missing now" if made.missing else "")
         + (f", {len(made.added)} new" if made.added else "")
         + ".",
@@ -45,6 +44,31 @@ def regressions(made: Comparison, missing_fails: bool) -> int:
         + sum(verdict.is_regression for verdict in made.verdicts)
         + (len(made.missing) if missing_fails else 0)
     )
+
+
+def _headline(made: Comparison, missing_fails: bool) -> str:
+    """The verdict, then the worst of what led to it."""
+    number = regressions(made, missing_fails)
+    if not number:
+        return "## PASSED, no regression"
+    head = f"## FAILED, {counted(number, 'regression')}" + (", worst" if number > 1 else "")
+    failed = [verdict for verdict in made.verdicts if verdict.is_regression]
+    if made.lost:
+        return f"{head}: {_pair_text(made.lost[0])}"
+    if not failed:
+        return f"{head}: {_place_text(made.missing[0])}: missing"
+    # What is exact goes before what is noisy.
+    worst = max(failed, key=lambda v: (not is_noisy(v.metric), _worst(v).worsening))
+    place = _worst(worst).place
+    return (
+        f"{head}: {markdown_text(worst.metric.label)} of {_place_text(place)}: "
+        f"{_change_text(worst, _worst(worst))}"
+    )
+
+
+def _worst(verdict: Verdict) -> Change:
+    """The cell that lost most."""
+    return max(verdict.changes, key=lambda change: change.worsening)
 
 
 def _run_text(results: Results) -> str:
@@ -99,6 +123,7 @@ def _changes(verdicts: Sequence[Verdict]) -> list[str]:
     if moved:
         rows = [
             [
+                "**worse**" if v.is_regression else _mild_verdict(v),
                 markdown_text(v.contender),
                 markdown_text(v.setting or "–"),
                 markdown_text(v.metric.label),
@@ -106,11 +131,11 @@ def _changes(verdicts: Sequence[Verdict]) -> list[str]:
                 f"{v.worse} of {len(v.changes)}",
                 f"{v.better} of {len(v.changes)}",
                 _extreme_text(v),
-                "**worse**" if v.is_regression else _mild_verdict(v),
             ]
             for v in sorted(moved, key=lambda v: not v.is_regression)
         ]
         heads = [
+            "verdict",
             "contender",
             "setting",
             "metric",
@@ -118,12 +143,11 @@ def _changes(verdicts: Sequence[Verdict]) -> list[str]:
             "worse on",
             "better on",
             "worst cell",
-            "verdict",
         ]
         if all(not v.setting for v in moved):
-            heads.pop(1)
-            rows = [[row[0], *row[2:]] for row in rows]
-        lines += ["", *markdown_table(heads, rows)]
+            heads.pop(2)
+            rows = [[*row[:2], *row[3:]] for row in rows]
+        lines += ["", *markdown_table(heads, rows, left=heads.index("metric") + 1)]
     exact = [v for v in verdicts if not is_noisy(v.metric)]
     equal = sum(not (v.worse or v.better) for v in exact)
     if exact:
@@ -157,7 +181,7 @@ def _mean_text(verdict: Verdict) -> str:
 
 def _extreme_text(verdict: Verdict) -> str:
     """The cell that lost most, if any lost."""
-    worst = max(verdict.changes, key=lambda change: change.worsening)
+    worst = _worst(verdict)
     if worst.worsening <= 0:
         return "–"
     return f"{markdown_text(worst.place.model)}: {_change_text(verdict, worst)}"

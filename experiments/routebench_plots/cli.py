@@ -11,9 +11,10 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from .console import EXIT_DONE, Parser, guarded, write_out
+from .database import find_database
 from .errors import PlotError
 from .figures import chosen_metrics, draw_all
-from .results import Results, find_database
+from .results import Results
 from .sheet import FORMATS
 from .terminal import progress
 

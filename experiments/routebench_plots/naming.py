@@ -7,7 +7,7 @@ import hashlib
 import re
 import unicodedata
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 _SLUG_LENGTH = 60
 _HASH_LENGTH = 7
@@ -33,6 +33,28 @@ def distinct_labels(names: Sequence[tuple[str, str]]) -> list[str]:
         if seen[label] > 1:
             labels[place] = f"{label} #{seen[label]}"
     return labels
+
+
+def short_specs(specs: Iterable[str]) -> dict[str, str]:
+    """A short name for each model: of a path the shortest end that no other one has.
+
+    Parametric shapes and the meshes of packages keep their spec; so does what stands after a `?`.
+    """
+    parts = {spec: _ends(spec) for spec in dict.fromkeys(specs)}
+    counts = Counter(end for ends in parts.values() for end in ends)
+    return {
+        spec: next((end for end in ends if counts[end] == 1), spec)
+        for spec, ends in parts.items()
+    }
+
+
+def _ends(spec: str) -> list[str]:
+    """The names that a spec might have, shortest first, itself last."""
+    if re.match(r"[a-z]+:", spec):
+        return [spec]
+    path, mark, options = spec.partition("?")
+    starts = [match.end() for match in re.finditer(r"/+(?=[^/])", path)]
+    return [path[start:] + mark + options for start in reversed(starts)] + [spec]
 
 
 def printable(text: str) -> str:

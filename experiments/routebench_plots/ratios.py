@@ -23,6 +23,7 @@ _PITCH = 0.24
 _BAR = 0.62
 _AROUND_PANEL = 0.75
 """Title, numbers and name of the axis."""
+_BESIDE_PANEL = 0.2
 
 
 def draw(
@@ -39,7 +40,13 @@ def draw(
     room = PAGE_WIDTH - 2 * MARGIN - label_width
     columns = even_columns(len(metrics), min(_MOST_COLUMNS, max(1, int(room / _LEAST_PANEL))))
     rows = -(-len(metrics) // columns)
-    pitch = max(_PITCH, text_height(max(map(len, names)), TEXT_SIZE) + 0.05)
+    panel_width = room / columns
+    mark = _mark(baseline, panel_width)
+    pitch = max(
+        _PITCH,
+        text_height(max(map(len, names)), TEXT_SIZE) + 0.05,
+        text_height(len(mark), SMALL_SIZE) + 0.08,
+    )
     compared = [Comparisons(results, setting, metric) for metric in metrics]
     sheet = Sheet(
         width=PAGE_WIDTH,
@@ -47,7 +54,6 @@ def draw(
         title=title,
         notes=_notes(results, setting, compared, baseline),
     )
-    panel_width = room / columns
     for axes, pairs in zip(sheet.row_by_row(len(metrics), columns), compared):
         _draw_panel(axes, contenders, pairs, baseline, panel_width)
         axes.set_yticks(range(len(contenders)), ["\n".join(lines) for lines in names])
@@ -65,8 +71,9 @@ def _draw_panel(
     everything = [1.0]
     for place, contender in enumerate(contenders):
         made = pairs.compare(contender, baseline)
+        if made is None:
+            _write(axes, place, "no shared model")
         if made is None or contender == baseline:
-            _write(axes, place, "no shared model" if made is None else "baseline")
             continue
         ratios = pairs.ratios(contender, baseline)
         everything += [*ratios, made.interval.low, made.interval.high]
@@ -78,12 +85,37 @@ def _draw_panel(
     axes.set_xlim(low, high)
     ratio_ticks(axes, low, high)
     axes.axvline(1, color="black", linewidth=0.8, zorder=1)
+    _name_line(axes, contenders.index(baseline), _mark(baseline, width), width)
     axes.set_ylim(len(contenders) - 0.5, -0.5)
     axes.grid(axis="x")
     axes.tick_params(axis="y", length=0, labelsize=TEXT_SIZE)
-    axes.set_title(wrapped(pairs.metric.label, width - 0.2, TEXT_SIZE))
+    axes.set_title(wrapped(pairs.metric.label, width - _BESIDE_PANEL, TEXT_SIZE))
     axes.set_xlabel(
-        wrapped(f"Ratio to baseline ({direction(pairs.metric)})", width - 0.2, TEXT_SIZE)
+        wrapped(f"Ratio to baseline ({direction(pairs.metric)})", width - _BESIDE_PANEL, TEXT_SIZE)
+    )
+
+
+def _mark(baseline: Item, width: float) -> list[str]:
+    """What stands on the line at 1."""
+    return wrap(f"baseline: {baseline.label}", width - _BESIDE_PANEL, SMALL_SIZE)
+
+
+def _name_line(axes: Axes, place: int, mark: Sequence[str], width: float) -> None:
+    """Writes over the line at 1, in the row that has no bar, without leaving the panel."""
+    low, high = (math.log(end) for end in axes.get_xlim())
+    half = max(text_width(line, SMALL_SIZE) for line in mark) / 2 / (width - _BESIDE_PANEL)
+    half = min(half, 0.5)
+    axes.text(
+        min(max(-low / (high - low), half), 1 - half),
+        place,
+        "\n".join(mark),
+        transform=axes.get_yaxis_transform(),
+        ha="center",
+        va="center",
+        size=SMALL_SIZE,
+        style="italic",
+        bbox={"facecolor": "white", "edgecolor": "none", "pad": 1},
+        zorder=2,
     )
 
 

@@ -7,21 +7,16 @@ need to know about a contender on a model under a setting is a `Slot`.
 from __future__ import annotations
 
 import json
-import math
-import sqlite3
 import statistics
 from collections import Counter, defaultdict
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
-from urllib.parse import quote
 
+from .database import Database, identifier, number, or_nan
 from .errors import PlotError
-from .naming import distinct_labels, printable
-
-SCHEMA_VERSION = "2"
-DATABASE_NAME = "results.sqlite"
+from .naming import distinct_labels, printable, short_specs
 
 VALID = "valid"
 NOT_RUN = "not_run"
@@ -99,17 +94,6 @@ class LayerRows:
     columns: dict[str, list[float]]
 
 
-def find_database(results: Path) -> Path:
-    """The database that `results`, a folder or the file itself, means."""
-    database = results / DATABASE_NAME if results.is_dir() else results
-    if not database.is_file():
-        raise PlotError(
-            f"{results}: no results database here; give the folder that "
-            f"'routebench run' wrote, or its {DATABASE_NAME}"
-        )
-    return database
-
-
 class Results:
     """The cells of an experiment's last run, seen at one moment.
 
@@ -119,9 +103,8 @@ class Results:
 
     def __init__(self, database: Path) -> None:
         self.database = database
-        self._connection = _open(database)
+        self._file = Database(database)
         try:
-            self._check_schema()
             self._slots, self.earlier_cells = self._read_slots()
             self.experiment = self._read_experiment()
             self.metrics = self._read_metrics()
@@ -138,7 +121,7 @@ class Results:
             self._tasks = self._read_json_of_settings("task")
             self._printers = self._read_json_of_settings("printer")
             self._layer_columns = frozenset(
-                row[1] for row in self._query("PRAGMA table_info(layer_score)")
+                row[1] for row in self._file.query("PRAGMA table_info(layer_score)")
             )
         except PlotError:
             self.close()
@@ -152,7 +135,13 @@ class Results:
 
     def close(self) -> None:
         """Lets go of the file."""
-        self._connection.close()
+        self._file.close()
+
+    def records(
+        self, sql: str, values: Sequence[object] = ()
+    ) -> Iterator[dict[str, Any]]:
+        """The rows of a query, their values by the names of its columns."""
+        return self._file.records(sql, values)
 
     def metric(self, name: str) -> Metric | None:
         """The metric of that name, if this database has it."""
@@ -209,13 +198,13 @@ class Results:
 
     def last_run(self) -> dict[str, Any]:
         """The row of the run whose cells these are: where, when and with what it ran."""
-        names = [row[1] for row in self._query("PRAGMA table_info(run)")]
-        rows = self._query("SELECT * FROM run ORDER BY run_id DESC LIMIT 1")
+        names = [row[1] for row in self._file.query("PRAGMA table_info(run)")]
+        rows = self._file.query("SELECT * FROM run ORDER BY run_id DESC LIMIT 1")
         return dict(zip(names, rows[0])) if rows else {}
 
     def mesh_hash(self, setting: Item, model: Item) -> str:
         """Equal for equal meshes; empty where the setting lacks the model."""
-        rows = self._query(
+        rows = self._file.query(
             "SELECT mesh_hash FROM model WHERE model_id = ?",
             (self._model_rows.get((setting.row_id, model.row_id)),),
         )
@@ -223,7 +212,7 @@ class Results:
 
     def task_number(self, setting: Item, key: str) -> float | None:
         """A number that the setting's task has under `key`, if any."""
-        return _number(self._tasks[setting.row_id].get(key))
+        return number(self._tasks[setting.row_id].get(key))
 
     def task(self, setting: Item) -> dict[str, Any]:
         """The keys of the setting's [task]."""
@@ -235,7 +224,7 @@ class Results:
 
     def base_name(self, contender: Item) -> str:
         """The contender's name without the point of its sweep."""
-        rows = self._query(
+        rows = self._file.query(
             "SELECT base_name FROM contender WHERE contender_id = ?",
             (contender.row_id,),
         )
@@ -243,7 +232,7 @@ class Results:
 
     def config_tables(self, key: str) -> list[dict[str, Any]]:
         """A list of tables in the last run's config, with all defaults."""
-        rows = self._query(
+        rows = self._file.query(
             "SELECT config_resolved_json FROM run ORDER BY run_id DESC LIMIT 1"
         )
         try:
@@ -258,7 +247,7 @@ class Results:
         self, setting: Item, model: Item, name: str
     ) -> float | None:
         """Triangles, layers, outline_vertices or side_mm of a model."""
-        rows = self._query(
+        rows = self._file.query(
             "SELECT triangles, layers, report_json FROM model "
             "WHERE model_id = ?",
             (self._model_rows.get((setting.row_id, model.row_id)),),
@@ -274,7 +263,7 @@ class Results:
                 mesh.get("lower_mm", []), mesh.get("upper_mm", [])
             )
         ]
-        return _number(
+        return number(
             {
                 "triangles": triangles,
                 "layers": layers,
@@ -286,17 +275,17 @@ class Results:
     def layer_rows(self, cell: Cell, metrics: Sequence[Metric]) -> LayerRows:
         """The scores of the cell's layers, upwards."""
         names = [m.name for m in metrics if m.name in self._layer_columns]
-        columns = "".join(f", {_identifier(name)}" for name in names)
-        rows = self._query(
+        columns = "".join(f", {identifier(name)}" for name in names)
+        rows = self._file.query(
             f"SELECT z_mm, repaired{columns} FROM layer_score "
             "WHERE cell_id = ? ORDER BY z_mm, layer_index",
             (cell.cell_id,),
         )
         return LayerRows(
-            z_mm=[_or_nan(row[0]) for row in rows],
+            z_mm=[or_nan(row[0]) for row in rows],
             repaired=[bool(row[1]) for row in rows],
             columns={
-                name: [_or_nan(row[place]) for row in rows]
+                name: [or_nan(row[place]) for row in rows]
                 for place, name in enumerate(names, start=2)
             },
         )
@@ -307,18 +296,18 @@ class Results:
         """One score of one layer of a cell."""
         if metric.name not in self._layer_columns:
             return None
-        rows = self._query(
-            f"SELECT {_identifier(metric.name)} FROM layer_score "
+        rows = self._file.query(
+            f"SELECT {identifier(metric.name)} FROM layer_score "
             "WHERE cell_id = ? AND layer_index = ?",
             (cell.cell_id, layer_index),
         )
-        return _number(rows[0][0]) if rows else None
+        return number(rows[0][0]) if rows else None
 
     def kept_layers(
         self, setting: Item, model: Item
     ) -> list[tuple[int, float]]:
         """Index and height of the layers whose pictures were kept."""
-        rows = self._query(
+        rows = self._file.query(
             "SELECT layer_index, z_mm FROM layer_shape WHERE model_id = ? "
             "ORDER BY layer_index",
             (self._model_rows.get((setting.row_id, model.row_id)),),
@@ -329,7 +318,7 @@ class Results:
         self, setting: Item, model: Item, layer_index: int
     ) -> str:
         """The material of a kept layer."""
-        rows = self._query(
+        rows = self._file.query(
             "SELECT wkt FROM layer_shape "
             "WHERE model_id = ? AND layer_index = ?",
             (
@@ -341,7 +330,7 @@ class Results:
 
     def route_json(self, cell: Cell, layer_index: int) -> str | None:
         """The route of a kept layer, if the cell came that far."""
-        rows = self._query(
+        rows = self._file.query(
             "SELECT strokes_json FROM route "
             "WHERE cell_id = ? AND layer_index = ?",
             (cell.cell_id, layer_index),
@@ -352,57 +341,27 @@ class Results:
         """Which row of the table model a model is under a setting."""
         return self._model_rows.get((setting.row_id, model.row_id))
 
-    def records(
-        self, sql: str, values: Sequence[object] = ()
-    ) -> Iterator[dict[str, Any]]:
-        """The rows of a query, their values by the names of its columns."""
-        try:
-            cursor = self._connection.execute(sql, values)
-            names = [column[0] for column in cursor.description]
-            for row in cursor:
-                yield dict(zip(names, row))
-        except sqlite3.Error as error:
-            raise self._broken(error) from error
-
-    def _query(
-        self, sql: str, values: Sequence[object] = ()
-    ) -> list[tuple[Any, ...]]:
-        try:
-            return self._connection.execute(sql, values).fetchall()
-        except sqlite3.Error as error:
-            raise self._broken(error) from error
-
-    def _broken(self, error: sqlite3.Error) -> PlotError:
-        return PlotError(
-            f"{self.database}: not a whole results database: {error}"
-        )
-
-    def _check_schema(self) -> None:
-        rows = self._query(
-            "SELECT value FROM meta WHERE key = 'schema_version'"
-        )
-        version = str(rows[0][0]) if rows else "missing"
-        if version != SCHEMA_VERSION:
-            raise PlotError(
-                f"{self.database}: schema version {version}, but these plots "
-                f"read version {SCHEMA_VERSION}; plot it with the routebench "
-                "that wrote it"
-            )
-
     def _read_metrics(self) -> tuple[Metric, ...]:
-        rows = self._query(
+        rows = self._file.query(
             "SELECT name, label, unit, better, total, meaning FROM metric "
             "ORDER BY position"
         )
         return tuple(Metric(*map(str, row)) for row in rows)
 
-    def _read_items(self, table: str, columns: str) -> tuple[Item, ...]:
-        """The rows of a table that a cell of the last run refers to."""
-        rows = self._query(
+    def _read_items(
+        self, table: str, columns: str, names: Mapping[str, str] | None = None
+    ) -> tuple[Item, ...]:
+        """The rows of a table that a cell of the last run refers to.
+
+        `names` says what is to be shown in place of the first column.
+        """
+        rows = self._file.query(
             f"SELECT {table}_id, {columns} FROM {table} WHERE {table}_id IN "
             f"(SELECT {table}_id FROM current_cell) ORDER BY {table}_id"
         )
-        labels = distinct_labels([(str(r[1]), str(r[2])) for r in rows])
+        labels = distinct_labels(
+            [((names or {}).get(str(r[1]), str(r[1])), str(r[2])) for r in rows]
+        )
         return tuple(Item(int(r[0]), text) for r, text in zip(rows, labels))
 
     def _read_models(
@@ -413,8 +372,11 @@ class Results:
         Tasks that want other layers or skins cut the same file anew: these
         rows are one model, as long as no setting has two of them.
         """
-        items = self._read_items("model", "spec, mesh_hash || layers_hash")
-        specs = dict(self._query("SELECT model_id, spec FROM model"))
+        specs = dict(self._file.query("SELECT model_id, spec FROM model"))
+        names = short_specs(specs[model] for _, model, _ in self._slots)
+        items = self._read_items(
+            "model", "spec, mesh_hash || layers_hash", names
+        )
         used: dict[str, dict[int, set[int]]] = defaultdict(
             lambda: defaultdict(set)
         )
@@ -429,7 +391,7 @@ class Results:
                 first = min(m for found in by_setting.values() for m in found)
                 if item.row_id != first:
                     continue
-                item = Item(first, printable(spec))
+                item = Item(first, printable(names[spec]))
                 for setting, found in by_setting.items():
                     rows[setting, first] = next(iter(found))
             else:
@@ -439,12 +401,12 @@ class Results:
         return tuple(models), rows
 
     def _read_experiment(self) -> str:
-        rows = self._query("SELECT value FROM meta WHERE key = 'experiment'")
+        rows = self._file.query("SELECT value FROM meta WHERE key = 'experiment'")
         return printable(str(rows[0][0])) if rows else ""
 
     def _read_slots(self) -> tuple[dict[tuple[int, int, int], Slot], int]:
         """The slots, and how many cells of earlier runs are not in them."""
-        rows = self._query(
+        rows = self._file.query(
             "SELECT setting_id, model_id, contender_id, cell_id, seed, "
             "outcome, reason FROM current_cell ORDER BY seed, cell_id"
         )
@@ -460,36 +422,36 @@ class Results:
                 Cell(int(cell_id), seed % 2**64, str(outcome), str(reason))
             )
         slots = {key: Slot(tuple(cells)) for key, cells in groups.items()}
-        total = self._query("SELECT count(*) FROM cell")[0][0]
+        total = self._file.query("SELECT count(*) FROM cell")[0][0]
         return slots, total - len(rows)
 
     def _read_scores(self) -> dict[tuple[int, str], float]:
-        rows = self._query("SELECT cell_id, metric, value FROM cell_score")
+        rows = self._file.query("SELECT cell_id, metric, value FROM cell_score")
         scores = {}
         for cell_id, metric, value in rows:
-            number = _number(value)
-            if number is not None:
-                scores[cell_id, metric] = number
+            total = number(value)
+            if total is not None:
+                scores[cell_id, metric] = total
         return scores
 
     def _read_samples(self) -> dict[tuple[int, str], list[float]]:
         columns = ", ".join(TIMED_METRICS)
-        rows = self._query(
+        rows = self._file.query(
             f"SELECT cell_id, {columns} FROM timing_sample "
             "ORDER BY cell_id, repetition"
         )
         samples: dict[tuple[int, str], list[float]] = defaultdict(list)
         for cell_id, *values in rows:
             for metric, value in zip(TIMED_METRICS, values):
-                number = _number(value)
-                if number is not None:
-                    samples[cell_id, metric].append(number)
+                sample = number(value)
+                if sample is not None:
+                    samples[cell_id, metric].append(sample)
         return samples
 
     def _read_json_of_settings(self, table: str) -> dict[int, dict[str, Any]]:
         """The config's table of that name as each setting has it."""
         found = {}
-        for setting_id, text in self._query(
+        for setting_id, text in self._file.query(
             f"SELECT setting_id, {table}_json FROM setting"
         ):
             try:
@@ -501,46 +463,3 @@ class Results:
                 ) from error
             found[setting_id] = keys if isinstance(keys, dict) else {}
         return found
-
-
-def _open(database: Path) -> sqlite3.Connection:
-    """A private copy: a run that goes on writing is never kept waiting."""
-    address = f"file:{quote(str(database.resolve()))}?mode=rw"
-    try:
-        # Opened for writing, because only then an interrupted write of a
-        # run that was killed can be undone; nothing else is written.
-        source = sqlite3.connect(address, uri=True)
-        try:
-            source.execute("PRAGMA query_only = ON")
-            copy = sqlite3.connect("")
-            source.backup(copy)
-        finally:
-            source.close()
-    except sqlite3.Error as error:
-        raise PlotError(
-            f"{database}: cannot be read as a results database: {error}"
-        ) from error
-    copy.text_factory = lambda text: text.decode(errors="replace")
-    return copy
-
-
-def _identifier(name: str) -> str:
-    """A column's name as SQL wants it."""
-    return '"' + name.replace('"', '""') + '"'
-
-
-def _number(value: object) -> float | None:
-    """A finite number, or None for whatever else a column may hold."""
-    if isinstance(value, str):
-        try:
-            value = float(value)
-        except ValueError:
-            return None
-    if isinstance(value, (int, float)) and math.isfinite(value):
-        return float(value)
-    return None
-
-
-def _or_nan(value: object) -> float:
-    number = _number(value)
-    return math.nan if number is None else number

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import os
+import re
 import shutil
 import subprocess
 import tempfile
@@ -11,15 +12,17 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from routebench_plots.console import EXIT_DONE, Parser, guarded, write_out
+from routebench_plots.database import DATABASE_NAME, find_database
 from routebench_plots.errors import PlotError
 from routebench_plots.naming import printable
-from routebench_plots.results import DATABASE_NAME, Results, find_database
+from routebench_plots.results import Results
 from routebench_plots.terminal import progress
 
 from . import content, sections
 from .page import page, viewer_section
 
 _SQLITE_HEAD = b"SQLite format 3\0"
+_MOVE = re.compile(r"^\s*(?:N\d+\s*)?G0*[0-3](?!\d)", re.MULTILINE | re.IGNORECASE)
 _SCREENS = ("DISPLAY", "WAYLAND_DISPLAY")
 
 
@@ -101,6 +104,11 @@ def _gcode_view(file: Path) -> str:
             f"file of G-code, a folder of results, or its {DATABASE_NAME}"
         )
     text = data.decode("utf-8", errors="replace")
+    if not _MOVE.search(text):
+        raise PlotError(
+            f"{file}: neither G-code nor results: no line of it is a move; give a file of "
+            f"G-code, a folder of results, or its {DATABASE_NAME}"
+        )
     name = printable(file.name)
     return page(content.gcode_content(name, text), [viewer_section()])
 

@@ -110,13 +110,23 @@ OutputSet::~OutputSet() {
     fs::remove(*folder, ignored);
 }
 
-void OutputSet::add_folder(const fs::path& folder) {
+void OutputSet::make_folders(const fs::path& folder, const fs::path& output) {
   std::error_code error;
-  const bool made = fs::create_directory(folder, error);
-  if (error || !fs::is_directory(folder))
-    fail(folder, error ? error.message() : "it is not a folder");
-  if (made) new_folders_.push_back(folder);
+  std::vector<fs::path> missing;
+  fs::path there = folder;
+  for (; !there.empty() && !fs::exists(there, error); there = there.parent_path())
+    missing.push_back(there);
+  if (!there.empty() && !fs::is_directory(there, error))
+    fail(output, (there == output ? "it" : there.string()) + " is not a folder");
+  for (auto at = missing.rbegin(); at != missing.rend(); ++at) {
+    if (fs::create_directory(*at, error)) new_folders_.push_back(*at);
+    if (error)
+      fail(output,
+           *at == output ? error.message() : "folder " + at->string() + ": " + error.message());
+  }
 }
+
+void OutputSet::add_folder(const fs::path& folder) { make_folders(folder, folder); }
 
 void OutputSet::add(const fs::path& file, const Write& write) {
   if (file == "-")
@@ -138,6 +148,7 @@ void OutputSet::add(const fs::path& file, const Write& write) {
     throw Error(ErrorKind::kBadUsage,
                 file.string() + ": named for two outputs; give each a file of its own");
   written_.push_back(target);
+  make_folders(file.parent_path(), file);
   const fs::path temporary = target.parent_path() / ("." + target.filename().string() + "." +
                                                      std::to_string(::getpid()) + ".part");
   pending_.push_back({temporary, target});

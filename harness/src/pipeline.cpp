@@ -90,7 +90,7 @@ SlicedModel read_layer_file(const std::string& spec, const Task& task,
                             const SliceModelOptions& options, const ParallelFor& parallel_for) {
   if (options.find_skins) require_no_facets_wanted(spec, task);
   SlicedModel sliced;
-  sliced.layers = read_wkt(spec, task.layer_height_mm);
+  sliced.layers = read_wkt(spec, task.layer_height_mm, &sliced.warnings);
   require_task_height(spec, sliced.layers, task);
   for (const Layer& layer : sliced.layers) sliced.report.repaired_layers += layer.repaired ? 1 : 0;
   mark_solid(sliced.layers, task, nullptr, options.find_skins, parallel_for);

@@ -59,22 +59,62 @@ Registry::Entry stand_in(const std::string& name, PlannerRole role, const std::s
   return entry;
 }
 
+/// What a contender's slot wants.
+struct SlotUse {
+  const std::string& planner;
+  PlannerRole role;
+};
+
+template <typename Act>
+void for_each_slot(const ExperimentConfig& config, Act&& act) {
+  for (const ConfiguredContender& contender : config.contenders) {
+    const ContenderSpec& spec = contender.spec;
+    if (spec.shell) act(contender, SlotUse{spec.shell->planner, PlannerRole::kShell});
+    if (spec.fill) act(contender, SlotUse{spec.fill->planner, PlannerRole::kFill});
+  }
+}
+
 /// Registers something under every name that nobody knows, if plugins have been refused.
 void stand_in_for_refused(PlannerSet& planners, const ExperimentConfig& config) {
   std::string reason, origin;
   for (const PluginRecord& plugin : planners.plugins) {
-    if (plugin.loaded || !plugin.by_name) continue;
+    if (plugin.loaded || !plugin.by_name || is_command(plugin.file)) continue;
     if (!std::filesystem::exists(plugin.file)) refuse(plugin);
     reason += "; plugin " + plugin.file + " was refused: " + plugin.refused_because;
     if (origin.empty()) origin = plugin.file;
   }
   if (reason.empty()) return;
-  for (const ConfiguredContender& contender : config.contenders)
-    for (const auto& [slot, role] : {std::pair{&contender.spec.shell, PlannerRole::kShell},
-                                     std::pair{&contender.spec.fill, PlannerRole::kFill}})
-      if (*slot && !planners.registry.entries().contains((*slot)->planner))
-        planners.registry.add_entry(
-            stand_in((*slot)->planner, role, origin, "it is not there" + reason));
+  for_each_slot(config, [&](const ConfiguredContender&, const SlotUse& slot) {
+    if (!planners.registry.entries().contains(slot.planner))
+      planners.registry.add_entry(
+          stand_in(slot.planner, slot.role, origin, "it is not there" + reason));
+  });
+}
+
+/// Registers a command under its own name, or not if it does not say what it is.
+/// Throws Error{kBadInput} if it names no program.
+const PluginRecord& add_command(PlannerSet& planners, const std::string& name,
+                                const std::filesystem::path& folder) {
+  planners.plugins.push_back(load_command(planners.registry, name, folder));
+  return planners.plugins.back();
+}
+
+/// What a command cannot be asked for is told by the cells that need it.
+void add_commands_or_stand_ins(PlannerSet& planners, const ExperimentConfig& config) {
+  const std::filesystem::path folder = std::filesystem::absolute(config.file).parent_path();
+  for_each_slot(config, [&](const ConfiguredContender& contender, const SlotUse& slot) {
+    if (!is_command(slot.planner) || planners.registry.entries().contains(slot.planner)) return;
+    try {
+      const PluginRecord& command = add_command(planners, slot.planner, folder);
+      if (!command.loaded)
+        planners.registry.add_entry(stand_in(slot.planner, slot.role, command.file,
+                                             "it was refused: " + command.refused_because));
+    } catch (const Error& error) {
+      const std::string slot_name = slot.role == PlannerRole::kShell ? "shell" : "fill";
+      throw Error(ErrorKind::kBadInput, contender.key_places.at(slot_name + ".planner") +
+                                            ": key `" + slot_name + ".command`: " + error.what());
+    }
+  });
 }
 
 }  // namespace
@@ -100,8 +140,8 @@ void add_commands(PlannerSet& planners, std::span<const std::string> names,
                   const std::filesystem::path& folder) {
   for (const std::string& name : names) {
     if (!is_command(name) || planners.registry.entries().contains(name)) continue;
-    planners.plugins.push_back(load_command(planners.registry, name, folder));
-    if (!planners.plugins.back().loaded) require_all_loaded(planners);
+    if (const PluginRecord& command = add_command(planners, name, folder); !command.loaded)
+      refuse(command);
   }
 }
 
@@ -113,11 +153,7 @@ void require_all_loaded(const PlannerSet& planners) {
 PlannerSet load_planners_for(const ExperimentConfig& config,
                              std::span<const std::string> plugin_files) {
   PlannerSet planners = load_planners(plugin_files);
-  std::vector<std::string> names;
-  for (const ConfiguredContender& contender : config.contenders)
-    for (const std::optional<SlotSpec>& slot : {contender.spec.shell, contender.spec.fill})
-      if (slot) names.push_back(slot->planner);
-  add_commands(planners, names, std::filesystem::absolute(config.file).parent_path());
+  add_commands_or_stand_ins(planners, config);
   stand_in_for_refused(planners, config);
   return planners;
 }

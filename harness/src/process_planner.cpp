@@ -46,9 +46,10 @@ std::vector<std::string> words_of(const std::string& text) {
     else
       words.back() += c;
   }
-  if (quote != 0) throw Error(ErrorKind::kBadInput, "a quote is not closed");
+  const std::string command = std::string(kCommandPrefix) + text;
+  if (quote != 0) throw Error(ErrorKind::kBadInput, command + ": a quote is not closed");
   if (words.empty() || words.front().empty())
-    throw Error(ErrorKind::kBadInput, "there is no word in it that names a program");
+    throw Error(ErrorKind::kBadInput, command + ": there is no word in it that names a program");
   return words;
 }
 
@@ -243,8 +244,8 @@ PluginRecord load_python_plugin(Registry& registry, const std::string& file) {
 bool is_command(const std::string& planner) { return planner.starts_with(kCommandPrefix); }
 
 PluginRecord load_command(Registry& registry, const std::string& planner, const fs::path& folder) {
+  const PlannerCommand command{words_of(planner.substr(kCommandPrefix.size())), folder};
   return recorded(planner, [&](PluginRecord& record) {
-    const PlannerCommand command{words_of(planner.substr(kCommandPrefix.size())), folder};
     record.sha256 = fingerprint_of(command);
     register_program(registry, std::make_shared<PlannerProcesses>(command, false), planner, record);
   });

@@ -56,6 +56,7 @@ class ProcessPlanner final : public Planner {
 ///
 /// Takes   the folder in which it runs; empty: here.
 /// Returns a record whose fingerprint covers the words and the files that they name.
+/// Throws  Error{kBadInput} if there are no words, or a quote is not closed.
 [[nodiscard]] PluginRecord load_command(Registry& registry, const std::string& planner,
                                         const std::filesystem::path& folder);
 

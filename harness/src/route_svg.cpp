@@ -7,6 +7,7 @@
 #include <string>
 
 #include "fixed_point.hpp"
+#include "routebench/geometry/layer_io.hpp"
 
 namespace routebench {
 namespace {
@@ -69,12 +70,13 @@ void write_head(Text& svg, const Layer& layer, const Frame& frame) {
   const double margin = 2 * frame.widest_mm;
   const double width = frame.upper.x - frame.lower.x + 2 * margin;
   const double height = frame.upper.y - frame.lower.y + 2 * margin;
+  const PictureSize shown = picture_size(width, height);
   svg << "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
-      << "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" << width << "mm\" height=\"" << height
-      << "mm\" viewBox=\"" << frame.lower.x - margin << " " << -frame.upper.y - margin << " "
-      << width << " " << height << "\" data-index=\"" << std::to_string(layer.index)
-      << "\" data-z-mm=\"" << layer.z_mm << "\" data-height-mm=\"" << layer.height_mm
-      << "\" data-repaired=\"" << (layer.repaired ? "true" : "false") << "\">\n"
+      << "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" << shown.width_px << "\" height=\""
+      << shown.height_px << "\" viewBox=\"" << frame.lower.x - margin << " "
+      << -frame.upper.y - margin << " " << width << " " << height << "\" data-index=\""
+      << std::to_string(layer.index) << "\" data-z-mm=\"" << layer.z_mm << "\" data-height-mm=\""
+      << layer.height_mm << "\" data-repaired=\"" << (layer.repaired ? "true" : "false") << "\">\n"
       << "<title>layer " << std::to_string(layer.index) << ", z " << layer.z_mm << " mm</title>\n"
       << "<g transform=\"scale(1 -1)\">\n";
 }

@@ -86,13 +86,15 @@ ContenderRecord record_of(const ConfiguredContender& configured, Json variant) {
 }
 
 /// Fingerprints of the plugin files from which a contender's planners come, with a space between.
+/// A refused one is marked: what it lacked may be there the next time, and then it is another one.
 std::string plugin_hashes(const ContenderSpec& spec, const PlannerSet& planners) {
   std::string hashes;
   for (const std::optional<SlotSpec>& slot : {spec.shell, spec.fill}) {
     if (!slot) continue;
     const std::string& origin = planners.registry.at(slot->planner).origin;
     for (const PluginRecord& plugin : planners.plugins)
-      if (plugin.file == origin) hashes += (hashes.empty() ? "" : " ") + plugin.sha256;
+      if (plugin.file == origin)
+        hashes += (hashes.empty() ? "" : " ") + plugin.sha256 + (plugin.loaded ? "" : kRefusedMark);
   }
   return hashes;
 }

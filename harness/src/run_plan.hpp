@@ -15,6 +15,9 @@
 
 namespace routebench {
 
+/// Stands after the fingerprint of a plugin that was refused.
+inline constexpr const char* kRefusedMark = "-refused";
+
 /// A model under the tasks that cut and fill it alike.
 struct ReadyModel {
   ModelRecord record;

@@ -53,7 +53,13 @@ std::string differences(const KnownCell& before, const PlannedCell& now) {
   if (before.contender->name != now.contender->record.name)
     add(changes, "the contender was called " + before.contender->name);
   add_differences(changes, "", before.contender->variant_json, now.contender->record.variant_json);
-  if (before.plugin_hashes != now.contender->plugin_hashes)
+  const auto refused = [](const std::string& hashes) {
+    return hashes.find(kRefusedMark) != std::string::npos;
+  };
+  if (refused(before.plugin_hashes) != refused(now.contender->plugin_hashes))
+    add(changes, refused(before.plugin_hashes) ? "the plugin of its planner had been refused"
+                                               : "the plugin of its planner is refused now");
+  else if (before.plugin_hashes != now.contender->plugin_hashes)
     add(changes, "the plugin file of its planner has changed");
   add_differences(changes, "task.", before.setting->task_json, now.setting->record.task_json);
   add_differences(changes, "printer.", before.setting->printer_json,

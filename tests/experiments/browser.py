@@ -96,6 +96,22 @@ class Browser:
         self._command("POST", "/url", {"url": page.resolve().as_uri() + hash_})
         self.wait_for("document.documentElement.dataset.ready === 'yes'")
 
+    def become_a_phone(self, width: int = 390, height: int = 844) -> None:
+        """Shows pages from now on as a telephone of that many points does."""
+        self._command(
+            "POST",
+            "/goog/cdp/execute",
+            {
+                "cmd": "Emulation.setDeviceMetricsOverride",
+                "params": {
+                    "width": width,
+                    "height": height,
+                    "deviceScaleFactor": 1,
+                    "mobile": True,
+                },
+            },
+        )
+
     def run(self, script: str, *arguments: object) -> Any:
         """The value that the body of a function returns."""
         return self._command(

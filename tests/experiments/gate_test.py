@@ -99,7 +99,7 @@ class GateTest(PlotTestCase):
         old = self.make("old")
         code, page, errors = self.gate(old, old)
         self.assertEqual((code, errors), (0, ""))
-        self.assertIn("no regression", page)
+        self.assertTrue(page.startswith("## PASSED, no regression\n"), page)
         self.assertNotIn("###", page)
 
     def test_one_percent_of_travel_fails(self) -> None:
@@ -108,14 +108,44 @@ class GateTest(PlotTestCase):
             new = self.make("new", self.scale("travel_mm", 1.01, model))
             code, page, _ = self.gate(old, new)
             self.assertEqual(code, 1, page)
-            self.assertIn("1 regression", page)
-            self.assertIn("+1 %", page)
+            head = page.splitlines()[0]
+            self.assertRegex(
+                head, r"^## FAILED, 1 regression: Travel of one on m\d: .+ mm \(\+1 %\)$"
+            )
         self.assertIn("worse on 1 of 6 cells", page)
-        self.assertIn("m3", page)
+        self.assertIn("Travel of one on m3: ", head)
         for allowed in ("--travel=2%", "--tolerance=0.02", "--limit=travel_mm=2%"):
             code, page, _ = self.gate(old, new, allowed)
             self.assertEqual(code, 0, page)
             self.assertIn("within the limit", page)
+
+    def test_the_headline_names_the_worst(self) -> None:
+        """A cell that is lost before any figure, what is exact before times, then the largest."""
+
+        def change(number: int, contender: str, scores: dict[str, float]) -> dict[str, float]:
+            scores["travel_mm"] *= {1: 1.02, 4: 1.3}.get(number, 1.0) if contender == "other" else 1
+            scores["retractions"] *= 1.1 if number == 2 else 1
+            return scores
+
+        def headline(**options: object) -> str:
+            new = self.make("new", **options)  # type: ignore[arg-type]
+            return self.gate(old, new, "--require-all")[1].splitlines()[0]
+
+        old = self.make("old")
+        self.assertRegex(
+            headline(change=change, slower=9.0),
+            r"^## FAILED, \d regressions, worst: Travel of other on m4: .* \(\+30 %\)$",
+        )
+        self.assertRegex(
+            headline(slower=9.0), r"^## FAILED, 2 regressions, worst: Planning CPU time of \w+ on m\d"
+        )
+        self.assertRegex(
+            headline(change=change, outcomes={(2, "one"): "crashed"}),
+            r"^## FAILED, \d regressions, worst: one on m2: valid → crashed$",
+        )
+        self.assertEqual(
+            headline(skip=(4, "other")), "## FAILED, 1 regression: other on m4: missing"
+        )
 
     def test_gains_elsewhere_excuse_nothing(self) -> None:
         def change(number: int, contender: str, scores: dict[str, float]) -> dict[str, float]:

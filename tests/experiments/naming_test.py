@@ -4,7 +4,12 @@ from __future__ import annotations
 
 import unittest
 
-from routebench_plots.naming import distinct_labels, file_slugs, printable
+from routebench_plots.naming import (
+    distinct_labels,
+    file_slugs,
+    printable,
+    short_specs,
+)
 from routebench_plots.quantities import (
     format_number,
     in_sentence,
@@ -25,6 +30,25 @@ class LabelTest(unittest.TestCase):
         )
         same = distinct_labels([("a", "1"), ("a", "1"), ("a\n", "1")])
         self.assertEqual(len(set(same)), 3)
+
+    def test_models_are_called_by_the_end_of_their_path(self) -> None:
+        expected = {
+            "/home/me/parts/left/lid.stl": "left/lid.stl",
+            "/home/me/parts/right/lid.stl": "right/lid.stl",
+            "/home/me/parts/hook.3mf?size=60": "hook.3mf?size=60",
+            "/home/me/parts/hook.3mf?size=30": "hook.3mf?size=30",
+            "../shared//box.stl": "box.stl",
+            "lid.stl": "lid.stl",
+            "/lid.obj?repair=a/b": "lid.obj?repair=a/b",
+            "shape:gear?teeth=12": "shape:gear?teeth=12",
+            "cgal:meshes/elephant.off": "cgal:meshes/elephant.off",
+        }
+        self.assertEqual(short_specs([*expected, *expected]), expected)
+        # An end that is another's whole name is no name.
+        self.assertEqual(
+            short_specs(["b.stl", "/a/b.stl"]), {"b.stl": "b.stl", "/a/b.stl": "a/b.stl"}
+        )
+        self.assertEqual(short_specs(["/b.stl", "b.stl"]), {"/b.stl": "/b.stl", "b.stl": "b.stl"})
 
     def test_printable_is_one_line(self) -> None:
         self.assertEqual(printable(" a\tb\r\nc\x00d\u2028e "), "a b c d e")

@@ -91,6 +91,22 @@ class OverviewTest(PlotTestCase):
         self.assertEqual(heat.ratio_text(1.006), "1.01")
         self.assertEqual(heat.ratio_text(1234.4), "1\u202f234")
 
+    def test_the_line_at_one_is_named(self) -> None:
+        """Wherever it lies, the name stands over it and inside the panel."""
+        sheet = ratios.draw(
+            self.results, self.setting, self.results.metrics[:6], self.item("good"), "Title"
+        )
+        renderer = sheet.figure.canvas.get_renderer()
+        for axes in visible_axes(sheet):
+            (mark,) = (text for text in axes.texts if text.get_text().startswith("baseline:"))
+            self.assertEqual(" ".join(mark.get_text().split()), "baseline: good")
+            box, panel = mark.get_window_extent(renderer), axes.get_window_extent(renderer)
+            line = axes.transData.transform((1, 0))[0]
+            self.assertLessEqual(box.x0 - 1, line)
+            self.assertLessEqual(line, box.x1 + 1)
+            self.assertGreaterEqual(box.x0, panel.x0 - 1)
+            self.assertLessEqual(box.x1, panel.x1 + 1)
+
     def test_bars_without_a_shared_model_say_so(self) -> None:
         sheet = ratios.draw(
             self.results, self.setting, [self.travel], self.item("good"), "Title"

@@ -139,7 +139,8 @@ class ReportTest(PageTestCase):
         self.assertGreaterEqual(shown.count(" ".join(NASTY.split())), 3)
         data = re.search(r'id="data">(.*?)</script>', text, re.S)
         assert data is not None
-        self.assertIn(" ".join(NASTY.split()), json.loads(data[1])["models"])
+        # A path goes by its end.
+        self.assertIn(" ".join(NASTY.rpartition("/")[2].split()), json.loads(data[1])["models"])
 
     def test_equal_input_gives_equal_bytes(self) -> None:
         place = self.results(["m"], ["a", "b"])
@@ -231,6 +232,15 @@ class ViewTest(PageTestCase):
         outline = Outline(self.make("view", "--no-open", self.results(["m"], ["a", "b"])))
         self.assertIn("viewer", outline.ids())
         self.assertNotIn("table", outline.ids())
+
+    def test_refuses_what_moves_nothing(self) -> None:
+        file = self.folder / "notes.txt"
+        for text in ("", "name = 'a'\n[task]\n", "dear diary\nG28\nG100 X1\n"):
+            file.write_text(text)
+            self.assert_refused(*self.call("view", "--no-open", str(file)), "no line of it is a move")
+        self.assertEqual([path.name for path in self.folder.iterdir()], ["notes.txt"])
+        file.write_text("n1 g01x3\n")
+        self.assertEqual(self.call("view", "--no-open", str(file))[0], 0)
 
     def test_refuses_what_is_binary(self) -> None:
         file = self.folder / "part.stl"

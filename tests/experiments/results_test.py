@@ -8,10 +8,24 @@ import stat
 import unittest
 from pathlib import Path
 
+from routebench_plots.database import find_database
 from routebench_plots.errors import PlotError
-from routebench_plots.results import Results, find_database
+from routebench_plots.results import Results
 from support import PlotTestCase
 from synthetic import Database, fill
+
+
+class PathTest(PlotTestCase):
+    """Models that lie somewhere on a disk."""
+
+    def test_models_are_called_by_the_end_of_their_path(self) -> None:
+        made = Database(self.folder / "results.sqlite")
+        setting, contender = made.setting(), made.contender("a")
+        for spec in ("/home/me/a/lid.stl?size=9", "/home/me/b/lid.stl?size=9", "shape:box"):
+            made.cell(made.model(spec), contender, setting, {"travel_mm": 1.0})
+        with Results(made.close()) as results:
+            labels = [model.label for model in results.models]
+        self.assertEqual(labels, ["a/lid.stl?size=9", "b/lid.stl?size=9", "shape:box"])
 
 
 class FindTest(PlotTestCase):

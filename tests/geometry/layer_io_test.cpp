@@ -187,6 +187,19 @@ TEST_F(Wkt, MakesPolygonsSound) {
   EXPECT_TRUE(wkt("POLYGON((0 0,10 10,5 5,0 0))")[0].polygons.empty());
 }
 
+TEST_F(Wkt, SaysWhichLayersItDidNotTakeToTheLetter) {
+  const std::string sound = "POLYGON((0 0,9 0,9 9,0 9,0 0),(2 2,3 2,3 3,2 2))\n";
+  const std::string bow_tie = "POLYGON((0 0,4 4,4 0,0 4,0 0))\n";
+  const std::string hole_outside = "POLYGON((0 0,1 0,1 1,0 1,0 0),(5 5,6 5,6 6,5 5))\n";
+  std::vector<std::string> warnings;
+  static_cast<void>(read_wkt(holding(sound + sound), 0.2, &warnings));
+  EXPECT_TRUE(warnings.empty());
+  static_cast<void>(read_wkt(holding(sound + bow_tie + sound + hole_outside), 0.2, &warnings));
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_TRUE(warnings[0].starts_with("2 layers of 4, first layer 1, with rings that cross"))
+      << warnings[0];
+}
+
 TEST_F(Wkt, ComplainsWithLineAndColumn) {
   const std::string good = "POLYGON((0 0,1 0,0 1,0 0))\n";
   EXPECT_NE(wkt_complaint(good + "POLYGON((0 0,1 0,x 1,0 0))").find(":2:18: expected x"),
@@ -229,7 +242,12 @@ TEST_F(Wkt, RefusesWhatIsNotALayer) {
         "POLYGON((0 0 1,1 0 1,0 1 1,0 0 1))\nPOLYGON((0 0 1,1 0 1,0 1 1,0 0 1))"})
     EXPECT_FALSE(wkt_complaint(text).empty()) << text;
   EXPECT_THROW(static_cast<void>(read_wkt("no/such/file.wkt", 0.2)), Error);
-  EXPECT_THROW(static_cast<void>(read_wkt(std::filesystem::temp_directory_path(), 0.2)), Error);
+  try {
+    static_cast<void>(read_wkt(std::filesystem::temp_directory_path(), 0.2));
+    ADD_FAILURE() << "a folder was read";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("is a folder"), std::string::npos) << error.what();
+  }
 }
 
 TEST_F(Wkt, NoCutShortOrDamagedFileDoesHarm) {
@@ -262,14 +280,22 @@ TEST_F(Svg, ReadsBackWhatItWrote) {
   }
 }
 
-TEST_F(Svg, IsInMillimetresWithYUpwards) {
+TEST_F(Svg, IsInMillimetresWithYUpwardsAndLargeEnoughToSee) {
   Layer layer;
   layer.polygons = {{test::rectangle(10, 20, 40, 60), {}}};
   layer.repaired = true;
   const std::string text = svg_of(layer);
-  for (const char* part : {"width=\"32mm\" height=\"42mm\" viewBox=\"9 -61 32 42\"", "scale(1 -1)",
+  for (const char* part : {"width=\"610\" height=\"800\" viewBox=\"9 -61 32 42\"", "scale(1 -1)",
                            "data-repaired=\"true\"", "d=\"M10 20L40 20L40 60L10 60Z\""})
     EXPECT_NE(text.find(part), std::string::npos) << part;
+}
+
+TEST_F(Svg, AnExtremeShapeKeepsASizeOnTheScreen) {
+  for (const auto& [width_mm, height_mm] : {std::pair{0.001, 0.002}, {1e6, 2.0}, {3.0, 3.0}}) {
+    const PictureSize shown = picture_size(width_mm, height_mm);
+    EXPECT_EQ(std::max(shown.width_px, shown.height_px), 800);
+    EXPECT_GE(std::min(shown.width_px, shown.height_px), 1);
+  }
 }
 
 TEST_F(Svg, ComplainsWithLineAndColumn) {

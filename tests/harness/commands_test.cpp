@@ -20,9 +20,9 @@ class Program : public test::ProgramTest {};
 TEST_F(Program, HelpIsThereForEveryCommand) {
   const ProgramRun help = call({"--help"});
   EXPECT_EQ(help.exit_code, 0);
-  for (const std::string command : {"run", "plan", "score", "slice", "planners", "check-planner",
-                                    "new-planner", "plot", "gate", "report", "view", "export",
-                                    "merge", "reproduce", "doctor"}) {
+  for (const std::string command :
+       {"run", "plan", "score", "slice", "planners", "check-planner", "new-planner", "plot", "gate",
+        "report", "view", "export", "merge", "reproduce", "doctor"}) {
     EXPECT_NE(help.out.find("\n  " + command + " "), help.out.npos) << command;
     const ProgramRun own = call({command, "--help"});
     EXPECT_EQ(own.exit_code, 0) << command;
@@ -116,7 +116,7 @@ TEST_F(SliceCommand, ThePeoplesSummaryHasTheMeshReport) {
 TEST_F(SliceCommand, BadUsageIsOneLine) {
   expect_refused({"slice", "shape:box", "--method", "buckets"}, "bucket");
   expect_refused({"slice", "shape:box", "--task", "layer_height_mm=-1"}, "layer_height_mm");
-  expect_refused({"slice", "shape:box", "--wkt", in_folder("no/where.wkt")}, "no/where.wkt");
+  expect_refused({"slice", "shape:box", "--wkt", "/dev/null/a.wkt"}, "/dev/null is not a folder");
 }
 
 TEST_F(SliceCommand, VoxelsSayWhatTheyNeedAndTakeTheLineWidth) {
@@ -143,7 +143,9 @@ TEST_F(SliceCommand, VoxelsSayWhatTheyNeedAndTakeTheLineWidth) {
                 .json()["layers"],
             document["layers"]);
   expect_refused({"slice", "shape:box", "--method", "voxel", "--cell", "0.0001"}, "GiB");
-  expect_refused({"slice", "shape:box", "--method", "voxel", "--cell", "-1"}, "cell_mm");
+  expect_refused({"slice", "shape:box", "--method", "voxel", "--cell", "-1"},
+                 "--cell -1: must be a number of millimetres above 0");
+  expect_refused({"slice", "shape:box", "--method", "voxel", "--cell", "nan"}, "--cell nan");
   expect_refused({"slice", "shape:box", "--cell", "1"}, "--cell");
 }
 

@@ -34,7 +34,7 @@ TEST_F(NewPlannerCommand, RefusesNamesAndFoldersThatWillNotDo) {
     expect_refused({"new-planner", name, folder}, "no name for a planner");
   expect_refused({"new-planner", "test", folder}, "CMake");
   expect_refused({"new-planner", "greedy_shell", folder}, "already");
-  expect_refused({"new-planner", "spiral", in_folder("no/such/folder")}, "no/such");
+  expect_refused({"new-planner", "spiral", "/dev/null/spiral"}, "/dev/null is not a folder");
   EXPECT_FALSE(fs::exists(folder));
 
   const test::ScratchDir taken;

@@ -114,16 +114,34 @@ TEST_F(Output, AFullDiskIsAnErrorThatNamesTheFile) {
 
 TEST_F(Output, PlacesThatCannotBeWrittenAreNamed) {
   OutputSet outputs;
-  const fs::path lost = folder_ / "missing" / "a";
-  EXPECT_EQ(error_of([&] { outputs.add(lost, saying("x")); }),
-            lost.string() + ": cannot be written: No such file or directory");
   EXPECT_EQ(error_of([&] { outputs.add(folder_, saying("x")); }),
             folder_.string() + ": cannot be written: it is a folder");
   std::ofstream(folder_ / "file") << "x";
-  EXPECT_NE(error_of([&] { outputs.add_folder(folder_ / "file"); }).find("cannot be written"),
-            std::string::npos);
-  EXPECT_NE(error_of([&] { outputs.add_folder(folder_ / "no" / "where"); }).find("no/where"),
-            std::string::npos);
+  const fs::path file = folder_ / "file";
+  EXPECT_EQ(error_of([&] { outputs.add_folder(file); }),
+            file.string() + ": cannot be written: it is not a folder");
+  EXPECT_EQ(error_of([&] { outputs.add(file / "a", saying("x")); }),
+            (file / "a").string() + ": cannot be written: " + file.string() + " is not a folder");
+  EXPECT_EQ(
+      error_of([&] { outputs.add(file / "b" / "a", saying("x")); }),
+      (file / "b" / "a").string() + ": cannot be written: " + file.string() + " is not a folder");
+}
+
+TEST_F(Output, MissingFoldersAreMadeAndGoWithWhatWasNotCommitted) {
+  const fs::path file = folder_ / "x" / "y" / "a";
+  {
+    OutputSet outputs;
+    outputs.add(file, saying("one"));
+    outputs.add_folder(folder_ / "p" / "q" / "");
+    EXPECT_TRUE(fs::is_directory(folder_ / "p" / "q"));
+  }
+  EXPECT_EQ(entries(), 0u);
+  OutputSet outputs;
+  outputs.add(file, saying("one"));
+  outputs.add_folder(folder_ / "p" / "q" / "");
+  outputs.commit();
+  EXPECT_EQ(content_of(file), "one");
+  EXPECT_TRUE(fs::is_directory(folder_ / "p" / "q"));
 }
 
 TEST_F(Output, OneFileCannotBeTwoOutputs) {

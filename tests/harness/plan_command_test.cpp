@@ -224,14 +224,23 @@ TEST_F(PlanCommand, WritesWholeFilesOrNone) {
   fs::remove(in_folder("a.json"));
   fs::remove(in_folder("a.gcode"));
   expect_refused({"plan", kModel, "--fill", "rectilinear", "--gcode", in_folder("a.gcode"),
-                  "--json", in_folder("missing/a.json")},
-                 "missing/a.json: cannot be written: No such file");
-  expect_refused({"plan", kModel, "--fill", "rectilinear", "--svg", in_folder("pictures"), "--json",
-                  in_folder("missing/a.json")},
-                 "missing/a.json");
+                  "--json", "/dev/null/a.json"},
+                 "/dev/null/a.json: cannot be written: /dev/null is not a folder");
+  expect_refused({"plan", kModel, "--fill", "rectilinear", "--svg", in_folder("new/pictures"),
+                  "--json", "/dev/null/a.json"},
+                 "/dev/null/a.json");
   expect_refused({"plan", kModel, "--fill", "rectilinear", "--gcode", in_folder("a"), "--json",
                   in_folder("a")},
                  "named for two outputs");
+}
+
+TEST_F(PlanCommand, MakesTheFoldersThatItsOutputsName) {
+  const ProgramRun run =
+      plan(kModel, {"--layers", "0", "--json", in_folder("x/y/a.json"), "--gcode",
+                    in_folder("x/z/a.gcode"), "--svg", in_folder("p/q")});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  for (const char* file : {"x/y/a.json", "x/z/a.gcode", "p/q/layer_0000.svg"})
+    EXPECT_TRUE(fs::is_regular_file(in_folder(file))) << file;
 }
 
 TEST_F(PlanCommand, AFullDiskIsAnError) {
@@ -278,6 +287,7 @@ TEST_F(PlanCommand, BadUsageIsOneLineThatHelps) {
   with_fill({"--order", "isle"}, "it is island or stage");
   with_fill({"--plugin", "/no/such/plugin.so"}, "plugin /no/such/plugin.so: refused: ");
   with_fill({"--jobs", "many"}, "--jobs");
+  with_fill({"--seed", "-1"}, "--seed");
   with_fill({"--shel", "greedy_shell"}, "did you mean '--shell'?");
   expect_refused({"plan", in_folder("missing.stl"), "--fill", "rectilinear"}, "missing.stl");
   expect_refused({"plan", in_folder("missing.wkt"), "--fill", "rectilinear"}, "missing.wkt");

@@ -35,10 +35,10 @@ class CellsTest(FolderTest):
         text = HEAD.format(plugins=plugins) + "".join(
             f'[[contender]]\nname = "{name}"\nfill = {fill}\n' for name, fill in contenders.items()
         )
-        self.run_experiment(text, expect=1)
+        self.last_run = self.run_experiment(text, expect=1)
         with sqlite3.connect(self.folder / "results" / "results.sqlite") as database:
             rows = database.execute(
-                "SELECT name, outcome, reason FROM cell JOIN contender USING(contender_id)"
+                "SELECT name, outcome, reason FROM current_cell JOIN contender USING(contender_id)"
             ).fetchall()
         self.assertEqual(len(rows), len(contenders))
         return {name: (outcome, reason) for name, outcome, reason in rows}
@@ -104,6 +104,38 @@ class CellsTest(FolderTest):
             {crime: f'{{ command = "{PROGRAM_PLANNER} {crime}" }}' for crime in expected}, ""
         )
         self.expect_outcomes(expected, found)
+
+
+    def test_a_command_that_is_no_planner_costs_only_what_needs_it(self) -> None:
+        refused = "^planner command:.*, layer 0: it was refused: "
+        expected = {
+            "missing": ("failed", refused + "cannot be started: ./late: No such file"),
+            "never": ("failed", refused + "its process ended with exit code 1 before it answered"),
+            "version": ("failed", refused + ".*it speaks protocol 2"),
+            "bars": ("valid", "^$"),
+        }
+        commands = {name: f"{PROGRAM_PLANNER} {name}" for name in expected}
+        commands |= {
+            "missing": f"./late {PLANNERS / 'program.py'}",
+            "bars": f"{PROGRAM_PLANNER} none",
+        }
+        contenders = {name: f'{{ command = "{text}" }}' for name, text in commands.items()}
+        self.expect_outcomes(expected, self.outcomes(contenders, ""))
+        complaints = [
+            line for line in self.last_run.splitlines() if line.startswith("routebench: warning: ")
+        ]
+        self.assertEqual(len(complaints), 3, self.last_run)
+        for name in ("missing", "never", "version"):
+            self.assertEqual(sum(commands[name] in line for line in complaints), 1, name)
+
+        # What can be started at last is executed, and the rest is not.
+        self.outcomes(contenders, "")
+        self.assertIn("4 of 4 cells are in the database already", self.last_run)
+        (self.folder / "late").symlink_to("/usr/bin/python3")
+        found = self.outcomes(contenders, "")
+        self.assertEqual(found["missing"], ("valid", ""))
+        self.assertIn("executing 1 cells", self.last_run)
+        self.assertIn("the plugin of its planner had been refused", self.last_run)
 
 
 class LoadingTest(FolderTest):
@@ -182,7 +214,13 @@ class LoadingTest(FolderTest):
         self.assertIn(
             "the slot has a `planner`, too", refusal('{ command = "x", planner = "voxel" }')
         )
-        self.assertIn("cannot be started: ./x", refusal('{ command = "./x" }'))
+        self.assertRegex(
+            refusal("{ command = \"python3 'x\" }"),
+            r"a.toml:\d+: key `fill.command`: .*a quote is not closed",
+        )
+        self.assertRegex(
+            refusal('{ command = "" }'), r"a.toml:\d+: key `fill.command`: .*no word in it"
+        )
         self.assertRegex(
             refusal(f'{{ command = "{PROGRAM_PLANNER}", angle = 3 }}'),
             r"a.toml:\d+: key `fill.angle`: planner command:.*unknown parameter 'angle'",

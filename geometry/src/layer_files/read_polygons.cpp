@@ -42,7 +42,7 @@ Ring read_ring(const std::vector<Point2>& points) {
   return ring;
 }
 
-Polygons sound_polygons(Polygons polygons) {
+SoundPolygons sound_polygons(Polygons polygons) {
   std::erase_if(polygons, [](const Polygon& polygon) { return polygon.outer.size() < 3; });
   for (Polygon& polygon : polygons) {
     std::erase_if(polygon.holes, [](const Ring& hole) { return hole.size() < 3; });
@@ -55,7 +55,7 @@ Polygons sound_polygons(Polygons polygons) {
   const double tolerance = 8 / kGridUnitsPerMm * (1 + length_mm);
   const bool sound = std::abs(area_mm2(meant) - area_mm2(polygons)) <= tolerance &&
                      std::abs(perimeter_mm(meant) - length_mm) <= tolerance;
-  return sound ? polygons : meant;
+  return {sound ? std::move(polygons) : std::move(meant), sound};
 }
 
 }  // namespace routebench::layer_files

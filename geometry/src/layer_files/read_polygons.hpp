@@ -14,9 +14,14 @@ inline constexpr double kMaxCoordinateMm = 1e6;
 /// The result has fewer than three points if the line has no extent.
 [[nodiscard]] Ring read_ring(const std::vector<Point2>& points);
 
+struct SoundPolygons {
+  Polygons polygons;
+  bool as_given;  ///< but for the sense of rings
+};
+
 /// Outer rings less their holes, united. Rings may run either way round, cross themselves, overlap
 /// and lie outside each other; polygons that are sound already come back as they are, rings turned
 /// the right way round.
-[[nodiscard]] Polygons sound_polygons(Polygons polygons);
+[[nodiscard]] SoundPolygons sound_polygons(Polygons polygons);
 
 }  // namespace routebench::layer_files

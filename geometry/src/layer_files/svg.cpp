@@ -21,6 +21,7 @@ using layer_files::TextCursor;
 constexpr std::string_view kMaterialClass = "material";
 constexpr std::string_view kSolidClass = "solid";
 constexpr double kMarginMm = 1;
+constexpr double kLongerSidePx = 800;
 
 std::string number(double value) {
   std::string text;
@@ -66,8 +67,8 @@ class SvgReader {
     if (!found_)
       in_.fail("expected an <svg> element with data-index, data-z-mm and data-height-mm");
     if (!closed_) in_.fail("the file ends before </svg>: it is cut short");
-    layer_.polygons = layer_files::sound_polygons(std::move(layer_.polygons));
-    layer_.solid = layer_files::sound_polygons(std::move(layer_.solid));
+    layer_.polygons = layer_files::sound_polygons(std::move(layer_.polygons)).polygons;
+    layer_.solid = layer_files::sound_polygons(std::move(layer_.solid)).polygons;
     return std::move(layer_);
   }
 
@@ -219,18 +220,26 @@ class SvgReader {
 
 }  // namespace
 
+PictureSize picture_size(double width_mm, double height_mm) {
+  const double px_per_mm = kLongerSidePx / std::max(width_mm, height_mm);
+  const auto whole = [](double px) { return std::max(1.0, std::round(px)); };
+  return {whole(width_mm * px_per_mm), whole(height_mm * px_per_mm)};
+}
+
 void write_svg(std::ostream& out, const Layer& layer) {
   Box2 box = bounding_box(layer.polygons);
   if (layer.polygons.empty()) box = {};
   const double left = box.lower.x - kMarginMm, top = -box.upper.y - kMarginMm;
-  const std::string width = number(box.upper.x - box.lower.x + 2 * kMarginMm);
-  const std::string height = number(box.upper.y - box.lower.y + 2 * kMarginMm);
+  const double width_mm = box.upper.x - box.lower.x + 2 * kMarginMm;
+  const double height_mm = box.upper.y - box.lower.y + 2 * kMarginMm;
+  const PictureSize shown = picture_size(width_mm, height_mm);
   std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
-  text += "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + width + "mm\" height=\"" + height +
-          "mm\" viewBox=\"" + number(left) + " " + number(top) + " " + width + " " + height +
-          "\" data-index=\"" + std::to_string(layer.index) + "\" data-z-mm=\"" +
-          number(layer.z_mm) + "\" data-height-mm=\"" + number(layer.height_mm) +
-          "\" data-repaired=\"" + (layer.repaired ? "true" : "false") + "\">\n";
+  text += "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + number(shown.width_px) +
+          "\" height=\"" + number(shown.height_px) + "\" viewBox=\"" + number(left) + " " +
+          number(top) + " " + number(width_mm) + " " + number(height_mm) + "\" data-index=\"" +
+          std::to_string(layer.index) + "\" data-z-mm=\"" + number(layer.z_mm) +
+          "\" data-height-mm=\"" + number(layer.height_mm) + "\" data-repaired=\"" +
+          (layer.repaired ? "true" : "false") + "\">\n";
   text += "<g transform=\"scale(1 -1)\" fill-rule=\"evenodd\">\n";
   append_paths(text, layer.polygons, kMaterialClass, "#b8b8b8");
   append_paths(text, layer.solid, kSolidClass, "#6e6e6e");

@@ -4,10 +4,12 @@
 #include <ostream>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "layer_files/read_polygons.hpp"
 #include "layer_files/text_cursor.hpp"
+#include "model/raw_mesh.hpp"
 #include "routebench/geometry/error.hpp"
 #include "routebench/geometry/layer_io.hpp"
 
@@ -79,6 +81,9 @@ class WktReader {
     return std::move(layers_);
   }
 
+  /// The layers that were not taken to the letter, by index.
+  [[nodiscard]] const std::vector<int>& unsound_layers() const noexcept { return unsound_layers_; }
+
  private:
   /// How many numbers a point has; unknown until the first point where the keyword does not say.
   enum class Points { kUnknown, kPlane, kWithZ };
@@ -119,7 +124,9 @@ class WktReader {
     if (!at_line_end())
       in_.fail("expected the end of the line after the geometry: one layer a line");
     Layer layer = placed(begin);
-    layer.polygons = layer_files::sound_polygons(std::move(polygons));
+    layer_files::SoundPolygons sound = layer_files::sound_polygons(std::move(polygons));
+    layer.polygons = std::move(sound.polygons);
+    if (!sound.as_given) unsound_layers_.push_back(layer.index);
     layers_.push_back(std::move(layer));
   }
 
@@ -248,6 +255,7 @@ class WktReader {
   bool ours_ = false;  // announces every layer in a comment
   std::vector<Layer> headers_;
   std::vector<Layer> layers_;
+  std::vector<int> unsound_layers_;
   Points points_ = Points::kUnknown;  // of the current layer
   std::optional<double> z_mm_;
 };
@@ -260,9 +268,22 @@ void write_wkt(std::ostream& out, const std::vector<Layer>& layers) {
   for (const Layer& layer : layers) out << geometry_of(layer);
 }
 
-std::vector<Layer> read_wkt(const std::filesystem::path& file, double layer_height_mm) {
+std::vector<Layer> read_wkt(const std::filesystem::path& file, double layer_height_mm,
+                            std::vector<std::string>* warnings) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(file, ignored))
+    throw Error(ErrorKind::kBadInput, file.string() + ": is a folder, not a file of layers");
   const std::string text = layer_files::read_file(file);
-  return WktReader(text, file.string(), layer_height_mm).read();
+  WktReader reader(text, file.string(), layer_height_mm);
+  std::vector<Layer> layers = reader.read();
+  const std::vector<int>& unsound = reader.unsound_layers();
+  if (warnings != nullptr && !unsound.empty())
+    warnings->push_back(models::counted(unsound.size(), "layer") + " of " +
+                        std::to_string(layers.size()) + ", first layer " +
+                        std::to_string(unsound.front()) +
+                        ", with rings that cross or overlap or holes outside: taken for what the "
+                        "outer rings enclose and the holes do not");
+  return layers;
 }
 
 }  // namespace routebench

@@ -18,12 +18,7 @@
 namespace routebench {
 namespace {
 
-struct Setting {
-  std::string key;
-  std::string value;
-};
-
-Setting setting_of(const std::string& option, const std::string& text) {
+KeyValue setting_of(const std::string& option, const std::string& text) {
   const std::size_t equals = text.find('=');
   if (equals == text.npos || equals == 0)
     throw Error(ErrorKind::kBadUsage, option + ": '" + text + "' is no setting; write key=value");
@@ -115,6 +110,30 @@ void add_jobs_option(CLI::App& command, int& jobs, const std::string& remark) {
       ->capture_default_str();
 }
 
+void add_cell_jobs_option(CLI::App& command, std::optional<int>& jobs) {
+  command.add_option("--jobs,-j", jobs, "Cells at a time; 0: one a core [as the config says]")
+      ->check(CLI::Range(0, 1024).description(""))
+      ->type_name("N");
+}
+
+void add_results_argument(CLI::App& command, std::string& results) {
+  command.add_option("RESULTS", results, "A folder of results, or the database in it")
+      ->type_name("")
+      ->required();
+}
+
+std::string exit_codes(const std::string& zero, const std::string& one) {
+  return "Exit codes: 0 " + zero + ", 1 " + one +
+         ", 2 bad usage or input, 3 internal error, 130 interrupted.";
+}
+
+int tell_interrupted(const RunSummary& summary) {
+  std::cerr << "routebench: interrupted; " << summary.executed + summary.found
+            << " cells are done and kept, " << summary.left
+            << " are left; the same command goes on\n";
+  return kExitInterrupted;
+}
+
 void add_offset_option(CLI::App& command, std::string& offset) {
   command
       .add_option("--offset", offset,
@@ -152,7 +171,7 @@ RunLog log_of(const std::string& form) {
 Task task_of(const std::vector<std::string>& settings) {
   Task task;
   for (const std::string& text : settings) {
-    const Setting setting = setting_of("--task", text);
+    const KeyValue setting = setting_of("--task", text);
     set_task_value(task, setting.key, setting.value);
   }
   check_task(task);
@@ -162,7 +181,7 @@ Task task_of(const std::vector<std::string>& settings) {
 Printer printer_of(const std::vector<std::string>& settings) {
   Printer printer;
   for (const std::string& text : settings) {
-    const Setting setting = setting_of("--printer", text);
+    const KeyValue setting = setting_of("--printer", text);
     set_printer_value(printer, setting.key, setting.value);
   }
   return printer;
@@ -171,7 +190,7 @@ Printer printer_of(const std::vector<std::string>& settings) {
 void apply_slot_settings(ContenderSpec& spec, const std::vector<std::string>& settings,
                          const Registry& registry) {
   for (const std::string& text : settings) {
-    const Setting setting = setting_of("--set", text);
+    const KeyValue setting = setting_of("--set", text);
     const std::size_t dot = setting.key.find('.');
     const std::string slot_name = setting.key.substr(0, dot);
     if (dot == setting.key.npos || (slot_name != "shell" && slot_name != "fill"))

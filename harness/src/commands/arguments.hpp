@@ -13,10 +13,21 @@
 #include "routebench/harness/output.hpp"
 #include "routebench/harness/pipeline.hpp"
 #include "routebench/harness/run_log.hpp"
+#include "routebench/harness/runner.hpp"
 #include "routebench/harness/task.hpp"
 #include "routebench/planning/registry.hpp"
 
 namespace routebench {
+
+/// Exit codes of what was done; what is thrown becomes another (see main.cpp).
+inline constexpr int kExitNotValid = 1;  ///< something is not valid, or not as it was
+inline constexpr int kExitInterrupted = 130;
+
+/// All exit codes of a command that executes cells, for its help.
+[[nodiscard]] std::string exit_codes(const std::string& zero, const std::string& one);
+
+/// Says what an interrupted run leaves. Returns the exit code.
+[[nodiscard]] int tell_interrupted(const RunSummary& summary);
 
 /// Adds an option that may be given several times, one value each.
 CLI::Option* add_repeated(CLI::App& command, const std::string& name,
@@ -31,6 +42,10 @@ void add_task_option(CLI::App& command, std::vector<std::string>& settings);
 void add_printer_option(CLI::App& command, std::vector<std::string>& settings);
 void add_plugin_option(CLI::App& command, std::vector<std::string>& files);
 void add_jobs_option(CLI::App& command, int& jobs, const std::string& remark = {});
+/// How many cells are executed at a time.
+void add_cell_jobs_option(CLI::App& command, std::optional<int>& jobs);
+/// The folder or database that a command reads.
+void add_results_argument(CLI::App& command, std::string& results);
 void add_repair_flag(CLI::App& command, bool& repair);
 void add_offset_option(CLI::App& command, std::string& offset);
 

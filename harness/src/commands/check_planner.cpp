@@ -28,7 +28,6 @@
 namespace routebench {
 namespace {
 
-constexpr int kExitNotValid = 1;
 constexpr std::size_t kShownFailures = 4;  // of a check; JSON and pictures have all
 constexpr ChildLimits kLimits{.timeout_s = 60, .memory_mb = 2048};
 constexpr double kBytesPerMib = 1 << 20;

@@ -4,6 +4,7 @@
 #include <ostream>
 #include <string>
 
+#include "arguments.hpp"
 #include "routebench/harness/commands.hpp"
 #include "routebench/harness/output.hpp"
 #include "routebench/harness/results.hpp"
@@ -35,9 +36,7 @@ void add_export_command(CLI::App& app, int& exit_code) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App& command =
       *app.add_subcommand("export", "Write results as CSV files or for Planner Arena");
-  command.add_option("RESULTS", arguments->results, "A folder of results, or the database in it")
-      ->type_name("")
-      ->required();
+  add_results_argument(command, arguments->results);
   command.add_option("--out", arguments->out, "Where the files go [RESULTS/FORMAT]")
       ->type_name("DIR");
   arguments->format = "csv";

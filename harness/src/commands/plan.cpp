@@ -1,5 +1,7 @@
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <iostream>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -21,8 +23,6 @@
 
 namespace routebench {
 namespace {
-
-constexpr int kExitNotValid = 1;
 
 struct PlanArguments {
   std::string model;
@@ -270,6 +270,7 @@ void add_plan_command(CLI::App& app, int& exit_code) {
   add_jobs_option(command, arguments->jobs,
                   "; planning times by the clock on the wall are to be trusted with 1 only");
   command.add_option("--seed", arguments->seed, "For planners that draw lots")
+      ->check(CLI::Range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max()).description(""))
       ->type_name("N")
       ->capture_default_str();
   add_repair_flag(command, arguments->repair);

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "arguments.hpp"
 #include "python_program.hpp"
 #include "routebench/harness/commands.hpp"
 
@@ -33,9 +34,7 @@ void add_plot_command(CLI::App& app, int& exit_code) {
   CLI::App* const command =
       app.add_subcommand("plot", "Draw figures and tables of an experiment's results");
   const auto options = std::make_shared<PlotOptions>();
-  command->add_option("RESULTS", options->results, "Folder of a run, or the results.sqlite in it")
-      ->type_name("")
-      ->required();
+  add_results_argument(*command, options->results);
   command->add_option("--out", options->out, "Folder for the figures [RESULTS/plots]")
       ->type_name("DIR");
   command->add_option("--formats", options->formats, "png, svg and pdf, with commas between them")

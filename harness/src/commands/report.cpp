@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "arguments.hpp"
 #include "python_program.hpp"
 #include "routebench/harness/commands.hpp"
 
@@ -34,9 +35,7 @@ void add_report_command(CLI::App& app, int& exit_code) {
   CLI::App* const command = app.add_subcommand(
       "report", "Write one HTML file with all of an experiment, and a viewer of its routes");
   const auto options = std::make_shared<PageOptions>();
-  command->add_option("RESULTS", options->input, "Folder of a run, or the results.sqlite in it")
-      ->type_name("")
-      ->required();
+  add_results_argument(*command, options->input);
   command->add_option("--out", options->out, "File to write [RESULTS/report.html]")
       ->type_name("FILE");
   command

@@ -13,14 +13,11 @@
 namespace routebench {
 namespace {
 
-constexpr int kExitDiffers = 1;
-constexpr int kExitInterrupted = 130;
-
 struct Arguments {
   std::string results;
   std::string out;
   std::string base;
-  int jobs = -1;
+  std::optional<int> jobs;
   bool fresh = false;
   std::vector<std::string> plugins;
   std::string progress;
@@ -44,11 +41,12 @@ int reproduce(const Arguments& arguments) {
   const Reproduction again = read_reproduction(original, base);
   const PlannerSet planners = load_planners_for(
       again.config, arguments.plugins.empty() ? again.plugins : arguments.plugins);
+  print_refused(planners);
 
   RunnerOptions options;
   options.out = arguments.out.empty() ? original.parent_path() / "reproduction"
                                       : std::filesystem::path(arguments.out);
-  if (arguments.jobs >= 0) options.jobs = arguments.jobs;
+  options.jobs = arguments.jobs;
   options.fresh = arguments.fresh;
   options.repair = again.repair;
   options.only_cells = again.cells;
@@ -56,16 +54,13 @@ int reproduce(const Arguments& arguments) {
   require_unfinished(options.out, options.fresh);
   const RunSummary summary =
       run_experiment(again.config, planners, options, log_of(arguments.progress));
-  if (summary.interrupted) {
-    std::cerr << "routebench: interrupted; the same command goes on\n";
-    return kExitInterrupted;
-  }
+  if (summary.interrupted) return tell_interrupted(summary);
   const Comparison comparison = compare_results(original, summary.file);
   write_to_stdout([&](std::ostream& out) {
     write_comparison(out, comparison);
     out << "results: " << summary.file.string() << '\n';
   });
-  return comparison.differences.empty() ? 0 : kExitDiffers;
+  return comparison.differences.empty() ? 0 : kExitNotValid;
 }
 
 }  // namespace
@@ -74,30 +69,24 @@ void add_reproduce_command(CLI::App& app, int& exit_code) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App& command = *app.add_subcommand(
       "reproduce", "Execute an experiment again from its results and say what differs");
-  command.add_option("RESULTS", arguments->results, "A folder of results, or the database in it")
-      ->type_name("")
-      ->required();
+  add_results_argument(command, arguments->results);
   command.add_option("--out", arguments->out, "Folder of the new results [RESULTS/reproduction]")
       ->type_name("DIR");
   command
       .add_option("--base", arguments->base,
                   "Where the config's relative paths begin [where they did]")
       ->type_name("DIR");
-  command
-      .add_option("--jobs,-j", arguments->jobs,
-                  "Cells at a time; 0: one a core [as the config says]")
-      ->check(CLI::Range(0, 1024))
-      ->type_name("N");
+  add_cell_jobs_option(command, arguments->jobs);
   command.add_flag("--fresh", arguments->fresh, "Replace an earlier reproduction");
   add_repeated(command, "--plugin", arguments->plugins, "FILE",
                "Plugins to load instead of the files that were loaded then");
   add_progress_option(command, arguments->progress);
-  command.footer(
-      "The config is the one that the database holds, and so are the cells. Outcomes, routes and\n"
-      "all metrics but times and memory must be equal to the bit; what differs is named. What was\n"
-      "different about program and machine is told beside it.\n"
-      "Exit codes: 0 reproduced, 1 something differs, 2 bad usage or input, 3 internal error,\n"
-      "130 interrupted.");
+  command.footer(std::string("The config is the one that the database holds, and so are the cells. "
+                             "Outcomes, routes and\n"
+                             "all metrics but times and memory must be equal to the bit; what "
+                             "differs is named. What was\n"
+                             "different about program and machine is told beside it.\n") +
+                 exit_codes("reproduced", "something differs"));
   command.callback([arguments, &exit_code] { exit_code = reproduce(*arguments); });
 }
 

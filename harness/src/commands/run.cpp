@@ -21,13 +21,10 @@
 namespace routebench {
 namespace {
 
-constexpr int kExitNotAllValid = 1;
-constexpr int kExitInterrupted = 130;
-
 struct Arguments {
   std::string config;
   std::string out;
-  int jobs = -1;
+  std::optional<int> jobs;
   bool fresh = false;
   bool dry_run = false;
   bool repair = false;
@@ -83,7 +80,7 @@ RunnerOptions options_of(const Arguments& arguments, const ExperimentConfig& con
   if (!arguments.shard.empty()) options.shard = read_shard(arguments.shard);
   options.out = arguments.out.empty() ? default_folder(config, options.shard)
                                       : std::filesystem::path(arguments.out);
-  if (arguments.jobs >= 0) options.jobs = arguments.jobs;
+  options.jobs = arguments.jobs;
   options.fresh = arguments.fresh;
   options.repair = arguments.repair;
   options.command_line = command_line();
@@ -105,18 +102,13 @@ int run(const Arguments& arguments) {
     return 0;
   }
   const RunSummary summary = run_experiment(config, planners, options, log);
-  if (summary.interrupted) {
-    std::cerr << "routebench: interrupted; " << summary.executed + summary.found
-              << " cells are done and kept, " << summary.left
-              << " are left; the same command goes on\n";
-    return kExitInterrupted;
-  }
+  if (summary.interrupted) return tell_interrupted(summary);
   const std::vector<StoredCell> cells = current_cells(summary.file);
   write_to_stdout([&](std::ostream& out) {
     write_ranking(out, cells);
     out << "\nresults: " << summary.file.string() << '\n';
   });
-  return all_valid(cells) ? 0 : kExitNotAllValid;
+  return all_valid(cells) ? 0 : kExitNotValid;
 }
 
 }  // namespace
@@ -131,11 +123,7 @@ void add_run_command(CLI::App& app, int& exit_code) {
       .add_option("--out", arguments->out,
                   "Folder of the results [results/NAME; of a shard results/NAME-shard-I-of-N]")
       ->type_name("DIR");
-  command
-      .add_option("--jobs,-j", arguments->jobs,
-                  "Cells at a time; 0: one a core [as the config says]")
-      ->check(CLI::Range(0, 1024))
-      ->type_name("N");
+  add_cell_jobs_option(command, arguments->jobs);
   command.add_flag("--fresh", arguments->fresh,
                    "Start anew; replace old results when a new cell is done");
   command.add_flag("--dry-run", arguments->dry_run,
@@ -151,12 +139,12 @@ void add_run_command(CLI::App& app, int& exit_code) {
                   "routebench merge joins them")
       ->type_name("I/N");
   add_progress_option(command, arguments->progress);
-  command.footer(
-      "Cells that the results hold already are not executed again, so the same command goes on\n"
-      "after an interruption. Ctrl-C keeps what is done. Timing samples are taken one at a time,\n"
-      "whatever --jobs says.\n"
-      "Exit codes: 0 all cells valid, 1 some are not, 2 bad usage, config or model, 3 internal\n"
-      "error, 130 interrupted.");
+  command.footer(std::string("Cells that the results hold already are not executed again, so the "
+                             "same command goes on\n"
+                             "after an interruption. Ctrl-C keeps what is done. Timing samples are "
+                             "taken one at a time,\n"
+                             "whatever --jobs says.\n") +
+                 exit_codes("all cells valid", "some are not"));
   command.callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 

@@ -19,8 +19,6 @@
 namespace routebench {
 namespace {
 
-constexpr int kExitNotValid = 1;
-
 struct ScoreArguments {
   std::string file;
   std::string model;

@@ -1,4 +1,5 @@
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -96,6 +97,9 @@ void slice(const SliceArguments& arguments) {
   const SliceMethod method = slice_method(arguments.method);
   if (arguments.cell_mm && method != SliceMethod::kVoxel)
     throw Error(ErrorKind::kBadUsage, "--cell: only --method voxel has cells");
+  if (arguments.cell_mm && !(*arguments.cell_mm > 0 && std::isfinite(*arguments.cell_mm)))
+    throw Error(ErrorKind::kBadUsage, "--cell " + readable(*arguments.cell_mm) +
+                                          ": must be a number of millimetres above 0");
   const SlicedModel model = slice_model(
       arguments.model, task,
       {.method = method,

@@ -9,7 +9,8 @@
 namespace routebench {
 
 /// Files that appear together once all of them have been written. Until then they lie under hidden
-/// temporary names beside their places; what was not committed is removed.
+/// temporary names beside their places. Folders that are missing on the way are made. What was not
+/// committed is removed, such folders too.
 class OutputSet {
  public:
   using Write = std::function<void(std::ostream&)>;
@@ -19,13 +20,12 @@ class OutputSet {
   OutputSet& operator=(const OutputSet&) = delete;
   ~OutputSet();
 
-  /// Makes a folder whose parent exists, unless it is there already.
-  /// Throws Error{kBadInput} naming the folder.
+  /// Makes a folder, unless it is there already. Throws Error{kBadInput} naming the folder.
   void add_folder(const std::filesystem::path& folder);
 
   /// Writes a file under its temporary name. A device or a pipe is written at once.
   /// Takes  a function that writes the content; it may throw.
-  /// Throws Error{kBadInput} naming the file if it cannot be written (missing folder, full disk,
+  /// Throws Error{kBadInput} naming the file if it cannot be written (no permission, full disk,
   ///        ...) and Error{kBadUsage} if it was added before.
   void add(const std::filesystem::path& file, const Write& write);
 
@@ -33,6 +33,9 @@ class OutputSet {
   void commit();
 
  private:
+  /// Makes a folder with its parents; errors name the output that it is for.
+  void make_folders(const std::filesystem::path& folder, const std::filesystem::path& output);
+
   struct Pending {
     std::filesystem::path temporary;
     std::filesystem::path file;

@@ -56,12 +56,14 @@ void add_commands(PlannerSet& planners, std::span<const std::string> names,
                   const std::filesystem::path& folder = {});
 
 /// The planners of an experiment: load_planners, then the commands in its slots, which run in the
-/// config's folder. If plugins have been refused, a name that nobody knows stands for a planner
-/// that takes any parameters and fails with the refusal as its reason: what needs a bad plugin
-/// fails, and the rest goes on.
+/// config's folder. What a plugin or a command does is a result: one that is refused (it cannot be
+/// started, crashes, says nothing sensible) is replaced by a planner that takes any parameters and
+/// fails with the refusal as its reason, so that what needs it fails, and the rest goes on. If
+/// plugins have been refused, that is done under every name that nobody knows.
 ///
 /// Takes  the config's plugin files and those given beside it.
-/// Throws Error{kBadInput} for a plugin that does not exist or a command that is no planner.
+/// Throws Error{kBadInput} for what reading shows to be wrong: a plugin that does not exist, a
+///        command without a word or with an open quote.
 [[nodiscard]] PlannerSet load_planners_for(const ExperimentConfig& config,
                                            std::span<const std::string> plugin_files);
 
