@@ -15,42 +15,51 @@ namespace {
 /// same for every number of threads.
 constexpr std::size_t kBins = 16;
 
-std::uint8_t bin_of(const Point3& p) noexcept {
-  return static_cast<std::uint8_t>(VertexWelder::tag_of(p) >> 28U);
-}
+std::size_t bin_of(const Point3& p) noexcept { return VertexWelder::tag_of(p) >> 28U; }
 static_assert(kBins == 1U << 4U, "a bin is the top four bits of a tag");
 
-/// The vertices of all parts, one after the other.
-class AllVertices {
+/// The vertices of one part, sorted by bin; in order within each.
+class BinnedPart {
  public:
-  explicit AllVertices(const std::vector<Mesh>& parts) : parts_(parts), begin_{0} {
-    for (const Mesh& part : parts) begin_.push_back(begin_.back() + part.vertices.size());
-  }
-  [[nodiscard]] std::size_t begin(std::size_t part) const { return begin_[part]; }
-  [[nodiscard]] std::size_t size() const { return begin_.back(); }
-
-  /// Calls visit(number, point) in order.
-  template <typename Visit>
-  void for_each(Visit&& visit) const {
-    for (std::size_t part = 0; part < parts_.size(); ++part) {
-      std::size_t number = begin_[part];
-      for (const Point3& point : parts_[part].vertices) visit(number++, point);
+  BinnedPart() = default;
+  /// `first` is the number of the part's first vertex among those of all parts.
+  BinnedPart(std::span<const Point3> points, std::size_t first)
+      : points_(points), first_(first), sorted_(points.size()) {
+    std::vector<std::uint8_t> bins(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      bins[i] = static_cast<std::uint8_t>(bin_of(points[i]));
+      ++begin_[bins[i] + 2];
     }
+    // Counts are kept two places up, so that after filling each entry is the beginning of its own.
+    for (std::size_t bin = 2; bin < begin_.size(); ++bin) begin_[bin] += begin_[bin - 1];
+    for (std::size_t i = 0; i < points.size(); ++i)
+      sorted_[begin_[bins[i] + 1]++] = static_cast<std::uint32_t>(i);
   }
+
+  /// Calls visit(number, point) for the vertices of a bin.
+  template <typename Visit>
+  void for_each_in(std::size_t bin, Visit&& visit) const {
+    for (std::size_t i = begin_[bin]; i < begin_[bin + 1]; ++i)
+      visit(static_cast<std::uint32_t>(first_ + sorted_[i]), points_[sorted_[i]]);
+  }
+  [[nodiscard]] std::span<const Point3> points() const noexcept { return points_; }
+  [[nodiscard]] std::size_t first() const noexcept { return first_; }
 
  private:
-  const std::vector<Mesh>& parts_;
-  std::vector<std::size_t> begin_;
+  std::span<const Point3> points_;
+  std::size_t first_ = 0;
+  std::vector<std::uint32_t> sorted_;
+  std::array<std::size_t, kBins + 2> begin_{};
 };
 
 /// Writes to first[i], for every vertex i of a bin, the first one at its place.
-void weld_bin(const AllVertices& all, std::span<const std::uint8_t> bins, std::size_t bin,
-              std::span<std::uint32_t> first) {
-  VertexWelder welder(all.size() / kBins);
+void weld_bin(std::span<const BinnedPart> parts, std::size_t bin, std::span<std::uint32_t> first) {
+  VertexWelder welder(first.size() / kBins);
   std::vector<std::uint32_t> first_of;  // per distinct point
+  first_of.reserve(first.size() / kBins);
   std::array<Point3, VertexWelder::kBatch> points;
-  std::array<std::uint32_t, VertexWelder::kBatch> numbers;
-  std::array<std::uint32_t, VertexWelder::kBatch> welded;
+  std::array<std::uint32_t, VertexWelder::kBatch> numbers;  // written before it is read
+  std::array<std::uint32_t, VertexWelder::kBatch> welded;   // as well
   std::size_t filled = 0;
   const auto flush = [&] {
     welder.weld({points.data(), filled}, welded.data());
@@ -60,39 +69,37 @@ void weld_bin(const AllVertices& all, std::span<const std::uint8_t> bins, std::s
     }
     filled = 0;
   };
-  all.for_each([&](std::size_t number, const Point3& point) {
-    if (bins[number] != bin) return;
-    points[filled] = point;
-    numbers[filled] = static_cast<std::uint32_t>(number);
-    if (++filled == points.size()) flush();
-  });
+  for (const BinnedPart& part : parts) {
+    part.for_each_in(bin, [&](std::uint32_t number, const Point3& point) {
+      points[filled] = point;
+      numbers[filled] = number;
+      if (++filled == points.size()) flush();
+    });
+  }
   flush();
 }
 
-/// For every vertex the number of its place, places being numbered in order of first appearance,
-/// and the places.
-std::pair<std::vector<std::uint32_t>, std::vector<Point3>> weld(const std::vector<Mesh>& parts,
-                                                                const AllVertices& all,
-                                                                const ParallelFor& parallel_for) {
-  std::vector<std::uint8_t> bins(all.size());
-  parallel_for(parts.size(), [&](std::size_t part) {
-    std::size_t number = all.begin(part);
-    for (const Point3& point : parts[part].vertices) bins[number++] = bin_of(point);
-  });
-  std::vector<std::uint32_t> place(all.size());
-  parallel_for(kBins, [&](std::size_t bin) { weld_bin(all, bins, bin, place); });
-
+/// Numbers the places of vertices in order of first appearance: one number for each vertex of the
+/// parts, and the places.
+std::pair<std::vector<std::uint32_t>, std::vector<Point3>> number_places(
+    std::span<const BinnedPart> parts, std::size_t vertices, const ParallelFor& parallel_for) {
+  std::vector<std::uint32_t> place(vertices);
+  parallel_for(kBins, [&](std::size_t bin) { weld_bin(parts, bin, place); });
   std::vector<Point3> places;
-  places.reserve(all.size());
-  all.for_each([&](std::size_t number, const Point3& point) {
-    const std::uint32_t first = place[number];
-    if (first == number) {
-      place[number] = static_cast<std::uint32_t>(places.size());
-      places.push_back(point);
-    } else {
-      place[number] = place[first];  // which has its number already
+  places.reserve(vertices);
+  for (const BinnedPart& part : parts) {
+    std::size_t number = part.first();
+    for (const Point3& point : part.points()) {
+      const std::uint32_t first = place[number];
+      if (first == number) {
+        place[number] = static_cast<std::uint32_t>(places.size());
+        places.push_back(point);
+      } else {
+        place[number] = place[first];  // which has its number already
+      }
+      ++number;
     }
-  });
+  }
   return {std::move(place), std::move(places)};
 }
 
@@ -100,18 +107,26 @@ std::pair<std::vector<std::uint32_t>, std::vector<Point3>> weld(const std::vecto
 
 Mesh join_parts(std::vector<Mesh> parts, const ParallelFor& parallel_for) {
   if (parts.size() == 1) return std::move(parts[0]);
-  const AllVertices all(parts);
-  auto [place, places] = weld(parts, all, parallel_for);
+  std::vector<std::size_t> first_vertex{0};
+  std::vector<std::size_t> first_triangle{0};
+  for (const Mesh& part : parts) {
+    first_vertex.push_back(first_vertex.back() + part.vertices.size());
+    first_triangle.push_back(first_triangle.back() + part.triangles.size());
+  }
+  std::vector<BinnedPart> binned(parts.size());
+  parallel_for(parts.size(), [&](std::size_t part) {
+    binned[part] = BinnedPart(parts[part].vertices, first_vertex[part]);
+  });
+  auto [place, places] = number_places(binned, first_vertex.back(), parallel_for);
+  binned = {};
 
-  std::vector<std::size_t> begin{0};
-  for (const Mesh& part : parts) begin.push_back(begin.back() + part.triangles.size());
   Mesh mesh;
   mesh.vertices = std::move(places);
-  mesh.triangles.resize(begin.back());
+  mesh.triangles.resize(first_triangle.back());
   const std::vector<std::uint32_t>& number = place;
   parallel_for(parts.size(), [&](std::size_t part) {
-    const std::uint32_t* const own = number.data() + all.begin(part);
-    auto* to = mesh.triangles.data() + begin[part];
+    const std::uint32_t* const own = number.data() + first_vertex[part];
+    auto* to = mesh.triangles.data() + first_triangle[part];
     for (const auto& [a, b, c] : parts[part].triangles) *to++ = {own[a], own[b], own[c]};
     parts[part] = {};  // its memory is the next one's
   });
