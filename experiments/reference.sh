@@ -61,7 +61,7 @@ for name in "${names[@]}"; do
   page=results/reference/$name
   rm -rf "$page"
   mkdir -p "$page"
-  for figure in "results/$name/plots"/{outcomes,scatter,scaling}*.png; do
+  for figure in "results/$name/plots"/{outcomes,scatter,scaling,bars-job}*.png; do
     [ ! -e "$figure" ] || cp "$figure" "$page/"
   done
   # Totals, without what only this machine knows.

@@ -47,25 +47,28 @@ void over_points(benchmark::internal::Benchmark* bench, std::int64_t most) {
 void to_many(benchmark::internal::Benchmark* bench) { over_points(bench, 1 << 14); }
 void to_few(benchmark::internal::Benchmark* bench) { over_points(bench, 1 << 12); }
 
-/// greedy_shell with its grid, on layers whose walls have as many segments as there are points.
-void walls_of_a_disc(benchmark::State& state) {
+/// greedy_shell with its grid round the holes of a plate; a hole has 20 segments.
+void walls_of_a_plate(benchmark::State& state) {
+  constexpr double kPitchMm = 5;
+  const auto side = static_cast<int>(state.range(0));
   Layer layer = bench::star_layer(3);
-  const auto points = static_cast<int>(state.range(0));
-  layer.polygons = {{test::star(1, points, {0, 0}, 999.0, 1000.0), {}}};
+  layer.polygons = {{test::rectangle(0, 0, kPitchMm * side, kPitchMm * side), {}}};
+  for (int x = 0; x < side; ++x)
+    for (int y = 0; y < side; ++y) {
+      Ring hole = test::star(1, 20, {(x + 0.5) * kPitchMm, (y + 0.5) * kPitchMm}, 1.5, 1.5);
+      std::reverse(hole.begin(), hole.end());
+      layer.polygons[0].holes.push_back(std::move(hole));
+    }
   PlanContext context;
   context.perimeters = 1;
-  const auto planner = planners().at("greedy_shell").make({{"gaps", "leave"}});
+  const auto planner = planners().at("greedy_shell").make({});
   std::size_t segments = 0;
   for (auto _ : state) segments = segments_of(planner->plan(layer, context));
   state.counters["segments"] = static_cast<double>(segments);
   state.SetComplexityN(static_cast<std::int64_t>(segments));
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(segments));
 }
-BENCHMARK(walls_of_a_disc)
-    ->RangeMultiplier(10)
-    ->Range(1000, 100'000)
-    ->Unit(benchmark::kMillisecond)
-    ->Complexity();
+BENCHMARK(walls_of_a_plate)->Arg(7)->Arg(22)->Arg(71)->Unit(benchmark::kMillisecond)->Complexity();
 
 /// Whatever is registered, with its defaults.
 const int registered = [] {
