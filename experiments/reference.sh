@@ -22,6 +22,8 @@ growth_page() {
     printf '# How time grows\n\n'
     printf 'Claims of the sources beside what was measured, an experiment each. '
     printf 'Time is that inside plan() or, where layers are cut, of cutting; of the processor, medians of the samples.\n'
+    printf 'A claim is about what remains when sizes grow; what every call costs alike makes fits of '
+    printf 'finite ranges flatter, so "grows slower" does not contradict an upper bound.\n'
     for config in experiments/complexity/*.toml; do
       name=$(basename "$config" .toml)
       "$program" run "$config" --out "results/complexity/$name" --jobs 1 >/dev/null || [ $? -eq 1 ]
@@ -59,7 +61,7 @@ for name in "${names[@]}"; do
   page=results/reference/$name
   rm -rf "$page"
   mkdir -p "$page"
-  for figure in "results/$name/plots"/{outcomes,scatter,scaling}*.png; do
+  for figure in "results/$name/plots"/{outcomes,scatter,scaling,bars-job}*.png; do
     [ ! -e "$figure" ] || cp "$figure" "$page/"
   done
   # Totals, without what only this machine knows.

@@ -65,7 +65,7 @@ void mark_solid(std::vector<Layer>& layers, const Task& task, const Mesh* mesh, 
 
 SlicedModel slice_mesh_model(const std::string& spec, const Task& task,
                              const SliceModelOptions& options, const ParallelFor& parallel_for) {
-  Model model = load_model(spec, {.repair = options.repair});
+  Model model = load_model(spec, {.repair = options.repair}, parallel_for);
   const SliceOptions slicing{.layer_height_mm = task.layer_height_mm,
                              .method = options.method,
                              .repair = options.repair,

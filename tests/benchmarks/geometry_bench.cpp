@@ -1,59 +1,22 @@
-/// Speed of reading and welding meshes, of slicing by method, and of questions to outlines.
+/// Speed of slicing by method, of chaining, and of questions to outlines.
 
 #include <benchmark/benchmark.h>
 
-#include <filesystem>
-#include <fstream>
 #include <random>
 
 #include "bench_models.hpp"
 #include "routebench/geometry/edge_grid.hpp"
 #include "routebench/geometry/slice.hpp"
-#include "routebench/geometry/stl.hpp"
-#include "scratch_dir.hpp"
+#include "slicing/chain_segments.hpp"
+#include "slicing/cut_triangles.hpp"
 
 namespace {
 
 using namespace routebench;
-namespace fs = std::filesystem;
 
-std::string ascii_stl(const Mesh& mesh) {
-  std::string text = "solid sphere\n";
-  for (const auto& triangle : mesh.triangles) {
-    text += "facet normal 0 0 0\nouter loop\n";
-    for (const std::uint32_t corner : triangle) {
-      const Point3& p = mesh.vertices[corner];
-      for (const std::string& piece :
-           {std::string("vertex "), std::to_string(p.x), std::string(" "), std::to_string(p.y),
-            std::string(" "), std::to_string(p.z), std::string("\n")})
-        text += piece;
-    }
-    text += "endloop\nendfacet\n";
-  }
-  return text + "endsolid\n";
-}
-
-void read_file(benchmark::State& state, const std::string& bytes) {
-  const test::ScratchDir folder;
-  const fs::path file = folder.path() / "model.stl";
-  std::ofstream(file, std::ios::binary) << bytes;
-  for (auto _ : state) benchmark::DoNotOptimize(load_model(file.string()));
-  state.SetComplexityN(state.range(0));
-  state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(bytes.size()));
-}
-
-/// Reading includes welding, the mesh's report and its placement.
-void read_binary_stl(benchmark::State& state) {
-  read_file(state, stl_bytes(bench::sphere(state.range(0)).mesh));
-}
-void read_ascii_stl(benchmark::State& state) {
-  read_file(state, ascii_stl(bench::sphere(state.range(0)).mesh));
-}
 void over_triangles(benchmark::internal::Benchmark* bench) {
   bench->RangeMultiplier(4)->Range(1 << 10, 1 << 20)->Unit(benchmark::kMillisecond)->Complexity();
 }
-BENCHMARK(read_binary_stl)->Apply(over_triangles);
-BENCHMARK(read_ascii_stl)->Apply(over_triangles);
 
 /// Cutting, chaining and union of the rings.
 template <SliceMethod kMethod>
@@ -70,6 +33,21 @@ BENCHMARK(slice_sphere<SliceMethod::kNaive>)
     ->Range(1 << 10, 1 << 18)
     ->Unit(benchmark::kMillisecond)
     ->Complexity();
+
+/// From the cuts of a layer to its rings, in 100 layers.
+void chain_cuts(benchmark::State& state) {
+  const Model model = bench::sphere(state.range(0));
+  const slicing::Planes planes{0.6, 100};
+  const slicing::CutTable table =
+      slicing::cut_triangles(model.mesh, planes, SliceMethod::kBucket, model.spec, serial_for);
+  for (auto _ : state)
+    for (int layer = 0; layer < planes.count; ++layer)
+      benchmark::DoNotOptimize(slicing::chain_cuts(table.layer(static_cast<std::size_t>(layer)),
+                                                   model.mesh, planes.z_mm(layer)));
+  state.SetComplexityN(state.range(0));
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(table.cuts.size()));
+}
+BENCHMARK(chain_cuts)->Apply(over_triangles);
 
 void build_edge_grid(benchmark::State& state) {
   const Layer layer = bench::star_layer(state.range(0));

@@ -1,8 +1,10 @@
 #include "model/content_hash.hpp"
 
-#include <algorithm>
 #include <bit>
+#include <numeric>
 #include <vector>
+
+#include "model/blocks.hpp"
 
 namespace routebench::models {
 namespace {
@@ -27,25 +29,36 @@ std::uint64_t point_hash(const Point3& p) noexcept {
   return chain(xy, std::bit_cast<std::uint64_t>(p.z + 0.0));
 }
 
+/// Whichever corner comes first.
+std::uint64_t triangle_hash(std::uint64_t a, std::uint64_t b, std::uint64_t c) noexcept {
+  while (a > b || a > c) {
+    const std::uint64_t first = a;
+    a = b;
+    b = c;
+    c = first;
+  }
+  return chain(chain(a, b), c);
+}
+
 }  // namespace
 
-std::uint64_t content_hash(const Mesh& mesh) {
+std::uint64_t content_hash(const Mesh& mesh, const ParallelFor& parallel_for) {
   std::vector<std::uint64_t> points(mesh.vertices.size());
-  std::transform(mesh.vertices.begin(), mesh.vertices.end(), points.begin(), point_hash);
-  std::uint64_t sum = 0;  // of the triangles' hashes: addition forgets their order
-  for (const auto& t : mesh.triangles) {
-    std::uint64_t a = points[t[0]];
-    std::uint64_t b = points[t[1]];
-    std::uint64_t c = points[t[2]];
-    while (a > b || a > c) {
-      const std::uint64_t first = a;
-      a = b;
-      b = c;
-      c = first;
+  for_each_block(points.size(), parallel_for, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) points[v] = point_hash(mesh.vertices[v]);
+  });
+  // Sums of the triangles' hashes: addition forgets their order.
+  std::vector<std::uint64_t> sums(block_count(mesh.triangles.size()));
+  const auto add_up = [&](std::size_t block, std::size_t begin, std::size_t end) {
+    std::uint64_t sum = 0;
+    for (std::size_t t = begin; t < end; ++t) {
+      const auto& [i, j, k] = mesh.triangles[t];
+      sum += triangle_hash(points[i], points[j], points[k]);
     }
-    sum += chain(chain(a, b), c);
-  }
-  return mix(sum + mesh.triangles.size());
+    sums[block] = sum;
+  };
+  for_each_block(mesh.triangles.size(), parallel_for, add_up);
+  return mix(std::accumulate(sums.begin(), sums.end(), std::uint64_t{mesh.triangles.size()}));
 }
 
 }  // namespace routebench::models

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "model/blocks.hpp"
+
 namespace routebench::models {
 namespace {
 
@@ -17,7 +19,8 @@ void for_each_side(const std::array<std::uint32_t, 3>& triangle, Visit&& visit) 
 
 }  // namespace
 
-EdgeTable::EdgeTable(std::span<const std::array<std::uint32_t, 3>> triangles, std::size_t vertices)
+EdgeTable::EdgeTable(std::span<const std::array<std::uint32_t, 3>> triangles, std::size_t vertices,
+                     const ParallelFor& parallel_for)
     : begin_(vertices + 2, 0), sides_(triangles.size() * 3) {
   // Counts are kept two places up, so that after filling each entry is the beginning of its own.
   for (const auto& triangle : triangles) {
@@ -30,9 +33,11 @@ EdgeTable::EdgeTable(std::span<const std::array<std::uint32_t, 3>> triangles, st
     });
   }
   begin_.pop_back();
-  for (std::size_t v = 0; v + 1 < begin_.size(); ++v) {
-    std::sort(sides_.data() + begin_[v], sides_.data() + begin_[v + 1]);
-  }
+  for_each_block(vertices, parallel_for, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) {
+      std::sort(sides_.data() + begin_[v], sides_.data() + begin_[v + 1]);
+    }
+  });
 }
 
 }  // namespace routebench::models

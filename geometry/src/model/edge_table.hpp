@@ -8,6 +8,8 @@
 #include <span>
 #include <vector>
 
+#include "routebench/geometry/parallel.hpp"
+
 namespace routebench::models {
 
 /// The sides of all triangles, grouped by the edge that they lie on.
@@ -37,13 +39,19 @@ class EdgeTable {
   };
 
   /// Takes at most 2^31 triangles, none with a corner twice.
-  EdgeTable(std::span<const std::array<std::uint32_t, 3>> triangles, std::size_t vertices);
+  EdgeTable(std::span<const std::array<std::uint32_t, 3>> triangles, std::size_t vertices,
+            const ParallelFor& parallel_for = serial_for);
 
   /// Calls visit(lower vertex, sides) for every edge, by rising vertex numbers; sides by rising
   /// triangle.
   template <typename Visit>
   void for_each_edge(Visit&& visit) const {
-    for (std::size_t lower = 0; lower + 1 < begin_.size(); ++lower) {
+    for_each_edge(0, begin_.size() - 1, visit);
+  }
+  /// The same for edges whose lower vertex is one of [first_vertex, last_vertex).
+  template <typename Visit>
+  void for_each_edge(std::size_t first_vertex, std::size_t last_vertex, Visit&& visit) const {
+    for (std::size_t lower = first_vertex; lower < last_vertex; ++lower) {
       const std::span<const Side> all(sides_.data() + begin_[lower],
                                       begin_[lower + 1] - begin_[lower]);
       for (std::size_t first = 0, next = 0; first < all.size(); first = next) {

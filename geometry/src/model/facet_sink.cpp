@@ -4,12 +4,13 @@
 #include <string>
 #include <utility>
 
+#include "model/join_parts.hpp"
+
 namespace routebench::models {
 
-FacetSink::FacetSink(const ReadContext& context, std::size_t expected)
-    : context_(context), welder_(expected / 2) {
-  raw_.single_precision = true;
-  raw_.mesh.triangles.reserve(expected);
+FacetSink::FacetSink(const ReadContext& context, std::size_t expected, std::size_t facets_before)
+    : context_(context), welder_(expected / 2), seen_(facets_before) {
+  mesh_.triangles.reserve(expected);
 }
 
 bool FacetSink::each_is_finite(const Facet& facet) noexcept {
@@ -42,19 +43,27 @@ void FacetSink::flush() {
   std::array<std::uint32_t, VertexWelder::kBatch> indices;  // written before it is read
   welder_.weld({batch_.data(), filled_}, indices.data());
   for (std::size_t i = 0; i < filled_; i += 3) {
-    raw_.mesh.triangles.push_back({indices[i], indices[i + 1], indices[i + 2]});
+    mesh_.triangles.push_back({indices[i], indices[i + 1], indices[i + 2]});
   }
   filled_ = 0;
 }
 
-RawMesh FacetSink::finish() {
+Mesh FacetSink::take_mesh() {
   flush();
-  if (dropped_ > 0) {
-    raw_.warnings.push_back(counted(dropped_, "facet") +
-                            " left out: with corners that are not finite numbers");
+  mesh_.vertices = welder_.take_vertices();
+  return std::exchange(mesh_, {});
+}
+
+RawMesh join_stl_parts(std::vector<Mesh> parts, std::size_t dropped,
+                       const ParallelFor& parallel_for) {
+  RawMesh raw;
+  raw.single_precision = true;
+  raw.mesh = join_parts(std::move(parts), parallel_for);
+  if (dropped > 0) {
+    raw.warnings.push_back(counted(dropped, "facet") +
+                           " left out: with corners that are not finite numbers");
   }
-  raw_.mesh.vertices = welder_.take_vertices();
-  return std::move(raw_);
+  return raw;
 }
 
 }  // namespace routebench::models

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "model/raw_mesh.hpp"
 #include "model/vertex_welder.hpp"
@@ -15,8 +16,9 @@ using Facet = std::array<std::array<float, 3>, 3>;
 /// Welds facets in batches and keeps out those whose corners are not finite.
 class FacetSink {
  public:
-  /// `expected` facets at most, bounded by what the file can hold.
-  FacetSink(const ReadContext& context, std::size_t expected);
+  /// `expected` facets at most, bounded by what the file can hold; messages count from
+  /// `facets_before` on.
+  FacetSink(const ReadContext& context, std::size_t expected, std::size_t facets_before = 0);
 
   /// Adds a facet. Throws Error{kBadInput} if a corner is not finite, unless the context says
   /// repair: then it is left out and counted. `place` tells a message where the facet is, for
@@ -36,11 +38,12 @@ class FacetSink {
     if (filled_ == batch_.size()) flush();
   }
 
-  /// Facets added so far, left out ones included.
+  /// Facets added so far and before, left out ones included.
   [[nodiscard]] std::size_t seen() const noexcept { return seen_; }
 
-  /// What was collected, with a warning about facets left out.
-  [[nodiscard]] RawMesh finish();
+  /// What was collected; the sink is empty afterwards. What was left out stands in dropped().
+  [[nodiscard]] Mesh take_mesh();
+  [[nodiscard]] std::size_t dropped() const noexcept { return dropped_; }
 
  private:
   [[nodiscard]] static bool is_finite(const Facet& facet) noexcept {
@@ -56,11 +59,15 @@ class FacetSink {
 
   const ReadContext& context_;
   VertexWelder welder_;
-  RawMesh raw_;
+  Mesh mesh_;
   std::array<Point3, VertexWelder::kBatch> batch_;
   std::size_t filled_ = 0;
-  std::size_t seen_ = 0;
+  std::size_t seen_;
   std::size_t dropped_ = 0;
 };
+
+/// The mesh of an STL file from those of its parts, with a warning about facets left out.
+[[nodiscard]] RawMesh join_stl_parts(std::vector<Mesh> parts, std::size_t dropped,
+                                     const ParallelFor& parallel_for);
 
 }  // namespace routebench::models

@@ -9,6 +9,7 @@
 #include <tuple>
 #include <utility>
 
+#include "model/blocks.hpp"
 #include "model/raw_mesh.hpp"
 #include "model/shells.hpp"
 #include "model/surface.hpp"
@@ -47,6 +48,34 @@ bool is_flat(const Mesh& mesh, const Triangle& t) noexcept {
   return u.y * v.z == u.z * v.y && u.z * v.x == u.x * v.z && u.x * v.y == u.y * v.x;
 }
 
+/// Triangles without area.
+struct Degenerate {
+  std::size_t collapsed = 0;  ///< with a corner twice
+  std::size_t flat = 0;       ///< the others
+};
+
+Degenerate count_degenerate(const Mesh& mesh, const ParallelFor& parallel_for) {
+  std::vector<Degenerate> blocks(block_count(mesh.triangles.size()));
+  const auto count = [&](std::size_t block, std::size_t begin, std::size_t end) {
+    Degenerate found;
+    for (std::size_t t = begin; t < end; ++t) {
+      if (has_corner_twice(mesh.triangles[t])) {
+        ++found.collapsed;
+      } else if (is_flat(mesh, mesh.triangles[t])) {
+        ++found.flat;
+      }
+    }
+    blocks[block] = found;
+  };
+  for_each_block(mesh.triangles.size(), parallel_for, count);
+  Degenerate all;
+  for (const Degenerate& found : blocks) {
+    all.collapsed += found.collapsed;
+    all.flat += found.flat;
+  }
+  return all;
+}
+
 /// A triangle that starts at its lowest corner; `either_way` makes both directions alike.
 Triangle normalised(const Triangle& t, bool either_way) noexcept {
   const auto lowest = static_cast<std::size_t>(std::min_element(t.begin(), t.end()) - t.begin());
@@ -82,7 +111,7 @@ void turn_flipped(std::vector<Triangle>& triangles, const Surface& surface) {
 }
 
 /// Applies a treatment to the mesh's triangles; leaves the mesh as it was.
-Treated treat(Mesh& mesh, const Treatment& treatment) {
+Treated treat(Mesh& mesh, const Treatment& treatment, const ParallelFor& parallel_for) {
   std::vector<Triangle> original = mesh.triangles;
   if (treatment.drop_flat) {
     std::erase_if(mesh.triangles, [&](const Triangle& t) { return is_flat(mesh, t); });
@@ -91,22 +120,23 @@ Treated treat(Mesh& mesh, const Treatment& treatment) {
     drop_copies(mesh.triangles, treatment.copies == Copies::kOne);
   }
   Treated treated;
-  treated.surface = survey(mesh);
+  treated.surface = survey(mesh, parallel_for);
   turn_flipped(mesh.triangles, treated.surface);
-  treated.shells = turn_inside_out_shells(mesh, treated.surface);
+  treated.shells = turn_inside_out_shells(mesh, treated.surface, parallel_for);
   treated.triangles = std::exchange(mesh.triangles, std::move(original));
   return treated;
 }
 
 /// Tries the treatments that can matter and keeps the best.
-Treated best_treatment(Mesh& mesh, bool has_flat, const Surface& as_it_came) {
+Treated best_treatment(Mesh& mesh, bool has_flat, const Surface& as_it_came,
+                       const ParallelFor& parallel_for) {
   const bool has_copies = as_it_came.copies_along + as_it_came.copies_against > 0;
   std::optional<Treated> best;
   for (const bool drop_flat : {true, false}) {
     if (drop_flat && !has_flat) continue;
     for (const Copies copies : {Copies::kOneOfEachDirection, Copies::kKeep, Copies::kOne}) {
       if (copies != Copies::kKeep && !has_copies) continue;
-      Treated treated = treat(mesh, {drop_flat, copies});
+      Treated treated = treat(mesh, {drop_flat, copies}, parallel_for);
       const auto badness = [](const Treated& t) {
         return std::tuple(t.surface.unpaired_edges, t.shells.empty == t.shells.count);
       };
@@ -153,19 +183,17 @@ void describe_defects(const MeshReport& report, std::vector<std::string>& warnin
 }  // namespace
 
 void mend(Mesh& mesh, const std::string& name, MeshReport& report,
-          std::vector<std::string>& warnings) {
+          std::vector<std::string>& warnings, const ParallelFor& parallel_for) {
   report.triangles = mesh.triangles.size();
   report.vertices = mesh.vertices.size();
-  const std::size_t collapsed = std::erase_if(mesh.triangles, has_corner_twice);
-  const auto flat =
-      static_cast<std::size_t>(std::count_if(mesh.triangles.begin(), mesh.triangles.end(),
-                                             [&](const Triangle& t) { return is_flat(mesh, t); }));
+  const auto [collapsed, flat] = count_degenerate(mesh, parallel_for);
+  if (collapsed > 0) std::erase_if(mesh.triangles, has_corner_twice);
   report.degenerate_triangles = collapsed + flat;
   if (flat == mesh.triangles.size()) {
     refuse_model(name, "nothing to print: no triangle has an area");
   }
 
-  Surface surface = survey(mesh);
+  Surface surface = survey(mesh, parallel_for);
   report.components = surface.components;
   report.open_edges = surface.open_edges;
   report.non_manifold_edges = surface.non_manifold_edges;
@@ -175,13 +203,13 @@ void mend(Mesh& mesh, const std::string& name, MeshReport& report,
 
   ShellReport shells;
   if (flat + report.duplicate_triangles > 0) {
-    Treated best = best_treatment(mesh, flat > 0, surface);
+    Treated best = best_treatment(mesh, flat > 0, surface, parallel_for);
     mesh.triangles = std::move(best.triangles);
     surface = std::move(best.surface);
     shells = best.shells;
   } else {
     turn_flipped(mesh.triangles, surface);
-    shells = turn_inside_out_shells(mesh, surface);
+    shells = turn_inside_out_shells(mesh, surface, parallel_for);
   }
   if (collapsed + flat > 0) drop_unused_vertices(mesh);
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "routebench/geometry/model.hpp"
+#include "routebench/geometry/parallel.hpp"
 #include "routebench/geometry/types.hpp"
 
 namespace routebench::models {
@@ -22,6 +23,6 @@ namespace routebench::models {
 /// Throws Error{kBadInput} where the surface encloses nothing.
 /// Cost   nearly linear; several surveys of the surface if it has defects.
 void mend(Mesh& mesh, const std::string& name, MeshReport& report,
-          std::vector<std::string>& warnings);
+          std::vector<std::string>& warnings, const ParallelFor& parallel_for);
 
 }  // namespace routebench::models

@@ -54,27 +54,28 @@ RawMesh read_model(const ModelSpec& parsed, const models::ReadContext& context) 
 
 }  // namespace
 
-Model load_model(const std::string& spec, const ModelOptions& options) {
+Model load_model(const std::string& spec, const ModelOptions& options,
+                 const ParallelFor& parallel_for) {
   ModelSpec parsed = models::parse_model_spec(spec);
   const std::optional<double> size_mm = models::take_size_mm(spec, parsed);
   const std::optional<double> simplify_share = models::take_simplify_share(spec, parsed);
   const std::string name = name_of(spec, parsed);
-  RawMesh raw = read_model(parsed, {name, options.repair});
+  RawMesh raw = read_model(parsed, {name, options.repair, parallel_for});
 
   Model model;
   model.spec = spec;
-  models::mend(raw.mesh, name, model.report, raw.warnings);
+  models::mend(raw.mesh, name, model.report, raw.warnings, parallel_for);
   if (simplify_share)
     model.report.simplification = models::simplify_mesh(raw.mesh, *simplify_share, name);
-  const double scale = models::place(raw, size_mm, name);
+  const double scale = models::place(raw, size_mm, name, parallel_for);
   if (model.report.simplification) model.report.simplification->deviation_mm *= scale;
-  const models::Bounds bounds = models::bounds_of(raw.mesh);
+  const models::Bounds bounds = models::bounds_of(raw.mesh, parallel_for);
   model.report.volume_mm3 *= scale * scale * scale;
   model.report.lower_mm = bounds.lower;
   model.report.upper_mm = bounds.upper;
   model.mesh = std::move(raw.mesh);
   model.warnings = std::move(raw.warnings);
-  model.content_hash = models::content_hash(model.mesh);
+  model.content_hash = models::content_hash(model.mesh, parallel_for);
   return model;
 }
 

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "routebench/geometry/parallel.hpp"
 #include "routebench/geometry/types.hpp"
 
 namespace routebench::models {
@@ -21,6 +22,7 @@ struct RawMesh {
 struct ReadContext {
   std::string name;     ///< as messages call the model
   bool repair = false;  ///< go on where a sound reader would refuse
+  ParallelFor parallel_for = serial_for;
 };
 
 /// Throws Error{kBadInput} "NAME: COMPLAINT", on one line whatever the name contains.

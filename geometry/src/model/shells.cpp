@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "model/blocks.hpp"
 #include "model/bounds.hpp"
 #include "model/nesting.hpp"
 
@@ -35,15 +36,38 @@ constexpr double kNearlyClosed = 0.5;
 /// Volumes below this share of the cube over the diagonal are rounding.
 constexpr double kNoVolume = 1e-12;
 
-std::vector<Shell> measure(const Mesh& mesh, const Surface& surface) {
-  std::vector<Shell> shells(surface.closed.size());
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    for (const std::uint32_t v : mesh.triangles[t]) {
-      shells[surface.shell[t]].bounds.add(mesh.vertices[v]);
-    }
+/// Calls add(shell, triangle) for every triangle and its shell. Of few shells every block of
+/// triangles makes figures of its own, which are put together in order by merge(shell, figures): so
+/// they do not depend on the threads. `shells` is where they begin.
+template <typename Add, typename Merge>
+void measure_triangles(const Surface& surface, const ParallelFor& parallel_for,
+                       std::vector<Shell>& shells, const Add& add, const Merge& merge) {
+  constexpr std::size_t kFewShells = 64;
+  const std::size_t triangles = surface.shell.size();
+  if (shells.size() > kFewShells) {
+    for (std::size_t t = 0; t < triangles; ++t) add(shells[surface.shell[t]], t);
+    return;
   }
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    Shell& shell = shells[surface.shell[t]];
+  std::vector<std::vector<Shell>> figures(block_count(triangles), shells);
+  const auto measure_block = [&](std::size_t block, std::size_t begin, std::size_t end) {
+    std::vector<Shell>& own = figures[block];
+    for (std::size_t t = begin; t < end; ++t) add(own[surface.shell[t]], t);
+  };
+  for_each_block(triangles, parallel_for, measure_block);
+  for (const std::vector<Shell>& own : figures) {
+    for (std::size_t s = 0; s < shells.size(); ++s) merge(shells[s], own[s]);
+  }
+}
+
+std::vector<Shell> measure(const Mesh& mesh, const Surface& surface,
+                           const ParallelFor& parallel_for) {
+  std::vector<Shell> shells(surface.closed.size());
+  const auto add_bounds = [&](Shell& shell, std::size_t t) {
+    for (const std::uint32_t v : mesh.triangles[t]) shell.bounds.add(mesh.vertices[v]);
+  };
+  measure_triangles(surface, parallel_for, shells, add_bounds,
+                    [](Shell& shell, const Shell& part) { shell.bounds.add(part.bounds); });
+  const auto add_volume = [&](Shell& shell, std::size_t t) {
     const Point3 middle = shell.bounds.middle();
     const auto& [i, j, k] = mesh.triangles[t];
     const Point3 a = minus(mesh.vertices[i], middle);
@@ -54,7 +78,15 @@ std::vector<Shell> measure(const Mesh& mesh, const Surface& surface) {
     shell.area += length(normal);
     shell.area_vector = {shell.area_vector.x + normal.x, shell.area_vector.y + normal.y,
                          shell.area_vector.z + normal.z};
-  }
+  };
+  const auto merge_volumes = [](Shell& shell, const Shell& part) {
+    shell.volume += part.volume;
+    shell.area += part.area;
+    shell.area_vector = {shell.area_vector.x + part.area_vector.x,
+                         shell.area_vector.y + part.area_vector.y,
+                         shell.area_vector.z + part.area_vector.z};
+  };
+  measure_triangles(surface, parallel_for, shells, add_volume, merge_volumes);
   for (std::size_t s = 0; s < shells.size(); ++s) {
     shells[s].solid =
         surface.closed[s] != 0 || length(shells[s].area_vector) < kNearlyClosed * shells[s].area;
@@ -116,8 +148,9 @@ std::vector<std::uint8_t> solids_to_turn(const Mesh& mesh, const Surface& surfac
 
 }  // namespace
 
-ShellReport turn_inside_out_shells(Mesh& mesh, const Surface& surface) {
-  const std::vector<Shell> shells = measure(mesh, surface);
+ShellReport turn_inside_out_shells(Mesh& mesh, const Surface& surface,
+                                   const ParallelFor& parallel_for) {
+  const std::vector<Shell> shells = measure(mesh, surface, parallel_for);
   std::vector<std::uint8_t> turn = solids_to_turn(mesh, surface, shells);
   const double scattered = scattered_volume(shells);
   ShellReport report;

@@ -23,6 +23,7 @@ struct ShellReport {
 /// are judged all together.
 /// Cost  linear in the triangles; where some shell faces inwards, also in the pairs of a triangle
 ///       and a shell whose lowest point lies over or under it.
-ShellReport turn_inside_out_shells(Mesh& mesh, const Surface& surface);
+ShellReport turn_inside_out_shells(Mesh& mesh, const Surface& surface,
+                                   const ParallelFor& parallel_for);
 
 }  // namespace routebench::models

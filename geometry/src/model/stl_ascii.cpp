@@ -1,13 +1,18 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "model/facet_sink.hpp"
+#include "model/quick_float.hpp"
 #include "model/stl_reader.hpp"
+#include "routebench/geometry/error.hpp"
 
 namespace routebench::models {
 namespace {
@@ -32,28 +37,33 @@ class AsciiStl {
         at_(begin_),
         end_(begin_ + bytes.size()),
         context_(context),
-        // No facet is written in less than "facet vertex 0 0 0 ..." takes.
+        // Writers take some 200 bytes a facet.
         sink_(context, std::min<std::size_t>(bytes.size() / 200 + 1, kMostTriangles)) {
     if (std::string_view(begin_, bytes.size()).starts_with("\xEF\xBB\xBF")) at_ += 3;
   }
 
-  RawMesh read() {
+  /// What was read of it.
+  struct Result {
+    Mesh mesh;
+    std::size_t facets = 0;            ///< left out ones included
+    std::size_t dropped = 0;           ///< left out
+    std::optional<bool> inside_solid;  ///< at the end; nothing if no solid began or ended
+    std::string cut;                   ///< a warning, if it ends inside a facet
+  };
+
+  Result read() {
     while (next_word()) {
       if (is_keyword(word_, "facet")) {
         if (begins_facet() && !read_facet()) break;
       } else if (is_keyword(word_, "solid")) {
-        solid_open_ = true;
+        inside_solid_ = true;
         pass_name();
       } else if (is_keyword(word_, "endsolid")) {
-        solid_open_ = false;
+        inside_solid_ = false;
         pass_name();
       }
     }
-    if (sink_.seen() == 0) refuse("an ASCII STL file without any whole facet");
-    if (solid_open_ && cut_.empty()) cut_ = "no endsolid: the file may be cut short";
-    RawMesh raw = sink_.finish();
-    if (!cut_.empty()) raw.warnings.push_back(cut_);
-    return raw;
+    return {sink_.take_mesh(), sink_.seen(), sink_.dropped(), inside_solid_, cut_};
   }
 
  private:
@@ -147,6 +157,11 @@ class AsciiStl {
   /// Reads three numbers. False if the file ends before they are complete.
   bool read_corner(std::array<float, 3>& corner) {
     for (float& coordinate : corner) {
+      while (at_ < end_ && is_blank(*at_)) ++at_;
+      if (const char* const after = quick_float(at_, end_, coordinate)) {
+        at_ = after;
+        continue;
+      }
       if (!next_word()) return false;
       coordinate = number();
     }
@@ -194,14 +209,88 @@ class AsciiStl {
   std::string_view word_;
   const ReadContext& context_;
   FacetSink sink_;
-  bool solid_open_ = false;
+  std::optional<bool> inside_solid_;
   std::string cut_;  ///< a warning about how the file ends
 };
+
+/// Where the first line from `from` on begins, the one at `from` left out, that opens a facet as
+/// every writer does; the end of the text if there is none. A solid's name ends with its line, so
+/// whoever reads on from there is in no name.
+std::size_t next_facet_line(std::string_view text, std::size_t from) {
+  const auto keyword_at = [&](std::size_t& at, std::string_view keyword) {
+    while (at < text.size() && is_blank(text[at])) ++at;
+    if (!is_keyword(text.substr(at, keyword.size()), keyword)) return false;
+    at += keyword.size();
+    return at < text.size() && is_blank(text[at]);
+  };
+  while ((from = text.find_first_of("\n\r", from)) != std::string_view::npos) {
+    std::size_t at = from;
+    if (keyword_at(at, "facet") && keyword_at(at, "normal")) return from;
+    ++from;
+  }
+  return text.size();
+}
+
+/// Sections of some megabytes that begin with facets; the same for every number of threads.
+std::vector<std::span<const char>> sections_of(std::span<const char> bytes) {
+  constexpr std::size_t kBytesPerSection = std::size_t{1} << 23U;
+  std::vector<std::span<const char>> sections;
+  for (std::size_t begin = 0, end = 0; begin < bytes.size(); begin = end) {
+    end = bytes.size() - begin > kBytesPerSection
+              ? next_facet_line({bytes.data(), bytes.size()}, begin + kBytesPerSection)
+              : bytes.size();
+    sections.push_back(bytes.subspan(begin, end - begin));
+  }
+  return sections;
+}
+
+/// Reads all sections at the same time. A fault in any of them is looked at again in one reading
+/// from the beginning, which knows numbers of facets and lines, and whether it is a fault at all.
+std::vector<AsciiStl::Result> read_sections(std::span<const char> bytes,
+                                            const ReadContext& context) {
+  const std::vector<std::span<const char>> sections = sections_of(bytes);
+  std::vector<AsciiStl::Result> results(sections.size());
+  std::vector<std::uint8_t> faulty(sections.size(), sections.size() > 1 ? 0 : 1);
+  if (sections.size() > 1) {
+    context.parallel_for(sections.size(), [&](std::size_t i) {
+      try {
+        results[i] = AsciiStl(sections[i], context).read();
+        faulty[i] = results[i].cut.empty() ? 0 : 1;
+      } catch (const Error&) {
+        faulty[i] = 1;
+      }
+    });
+  }
+  if (std::find(faulty.begin(), faulty.end(), 1) == faulty.end()) return results;
+  results.resize(1);
+  results[0] = AsciiStl(bytes, context).read();
+  return results;
+}
 
 }  // namespace
 
 RawMesh read_ascii_stl(std::span<const char> bytes, const ReadContext& context) {
-  return AsciiStl(bytes, context).read();
+  std::vector<AsciiStl::Result> results = read_sections(bytes, context);
+  std::vector<Mesh> parts;
+  std::size_t facets = 0;
+  std::size_t dropped = 0;
+  bool inside_solid = false;
+  for (AsciiStl::Result& result : results) {
+    parts.push_back(std::move(result.mesh));
+    facets += result.facets;
+    dropped += result.dropped;
+    inside_solid = result.inside_solid.value_or(inside_solid);
+  }
+  if (facets == 0) refuse_model(context.name, "an ASCII STL file without any whole facet");
+  refuse_too_many_triangles(context.name, facets);
+  RawMesh raw = join_stl_parts(std::move(parts), dropped, context.parallel_for);
+  const std::string& cut = results.back().cut;
+  if (!cut.empty()) {
+    raw.warnings.push_back(cut);
+  } else if (inside_solid) {
+    raw.warnings.emplace_back("no endsolid: the file may be cut short");
+  }
+  return raw;
 }
 
 }  // namespace routebench::models

@@ -2,9 +2,13 @@
 #include <bit>
 #include <cstdint>
 #include <cstring>
+#include <numeric>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
+#include "model/blocks.hpp"
 #include "model/facet_sink.hpp"
 #include "model/stl_reader.hpp"
 
@@ -74,14 +78,23 @@ RawMesh read_binary_stl(std::span<const char> bytes, const ReadContext& context)
   if (extent.facets == 0) refuse_model(context.name, "a binary STL file without any facet");
   refuse_too_many_triangles(context.name, extent.facets);
 
-  FacetSink sink(context, extent.facets);
-  for (std::size_t i = 0; i < extent.facets; ++i) {
-    const std::size_t offset = kHeaderBytes + i * kFacetBytes;
-    Facet facet;
-    std::memcpy(&facet, bytes.data() + offset + kNormalBytes, sizeof facet);
-    sink.add(facet, [offset] { return "byte " + std::to_string(offset); });
-  }
-  RawMesh raw = sink.finish();
+  std::vector<Mesh> parts(block_count(extent.facets));
+  std::vector<std::size_t> dropped(parts.size());
+  const auto read = [&](std::size_t block, std::size_t begin, std::size_t end) {
+    FacetSink sink(context, end - begin, begin);
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::size_t offset = kHeaderBytes + i * kFacetBytes;
+      Facet facet;
+      std::memcpy(&facet, bytes.data() + offset + kNormalBytes, sizeof facet);
+      sink.add(facet, [offset] { return "byte " + std::to_string(offset); });
+    }
+    parts[block] = sink.take_mesh();
+    dropped[block] = sink.dropped();
+  };
+  for_each_block(extent.facets, context.parallel_for, read);
+  RawMesh raw = join_stl_parts(std::move(parts),
+                               std::accumulate(dropped.begin(), dropped.end(), std::size_t{0}),
+                               context.parallel_for);
   if (!extent.warning.empty()) raw.warnings.push_back(extent.warning);
   return raw;
 }

@@ -4,7 +4,9 @@
 #include <span>
 #include <utility>
 
+#include "model/blocks.hpp"
 #include "model/edge_table.hpp"
+#include "model/shared_sets.hpp"
 #include "model/triangle_sets.hpp"
 
 namespace routebench::models {
@@ -14,11 +16,13 @@ using Sides = std::span<const EdgeTable::Side>;
 
 class Survey {
  public:
-  explicit Survey(const Mesh& mesh)
-      : mesh_(mesh), edges_(mesh.triangles, mesh.vertices.size()), sets_(mesh.triangles.size()) {}
+  Survey(const Mesh& mesh, const ParallelFor& parallel_for)
+      : mesh_(mesh),
+        edges_(mesh.triangles, mesh.vertices.size(), parallel_for),
+        patch_(meet_edges(parallel_for)) {}
 
   Surface run() {
-    meet_edges();
+    if (clash_) tell_directions();
     label_patches();
     if (clash_) turn_minorities();
     join_patches();
@@ -26,23 +30,47 @@ class Survey {
   }
 
  private:
-  /// First look at every edge: counts, patches, copies.
-  void meet_edges() {
-    edges_.for_each_edge([&](std::uint32_t lower, Sides sides) {
-      if (sides.size() == 1) {
-        ++result_.open_edges;
-        return;
-      }
-      count_copies(lower, sides);
-      if (sides.size() > 2) {
-        wide_.push_back(sides);
-        return;
-      }
-      const bool against = sides[0].rising() == sides[1].rising();
-      clash_ |= against;
-      sets_.join(sides[0].triangle(), sides[1].triangle(), against);
-    });
+  /// What was met at some of the edges.
+  struct Met {
+    std::size_t open_edges = 0;
+    std::size_t copies_along = 0;
+    std::size_t copies_against = 0;
+    bool clash = false;
+    std::vector<Sides> wide;
+  };
+
+  /// First look at every edge: counts, copies, patches. Returns for each triangle a lower one of
+  /// its patch, or itself.
+  std::vector<std::uint32_t> meet_edges(const ParallelFor& parallel_for) {
+    SharedSets sets(mesh_.triangles.size());
+    std::vector<Met> blocks(block_count(mesh_.vertices.size()));
+    const auto meet = [&](std::size_t block, std::size_t begin, std::size_t end) {
+      Met met;
+      edges_.for_each_edge(begin, end, [&](std::uint32_t lower, Sides sides) {
+        if (sides.size() == 1) {
+          ++met.open_edges;
+          return;
+        }
+        count_copies(lower, sides, met);
+        if (sides.size() > 2) {
+          met.wide.push_back(sides);
+          return;
+        }
+        met.clash |= sides[0].rising() == sides[1].rising();
+        sets.join(sides[0].triangle(), sides[1].triangle());
+      });
+      blocks[block] = std::move(met);
+    };
+    for_each_block(mesh_.vertices.size(), parallel_for, meet);
+    for (const Met& met : blocks) {
+      result_.open_edges += met.open_edges;
+      result_.copies_along += met.copies_along;
+      result_.copies_against += met.copies_against;
+      clash_ |= met.clash;
+      wide_.insert(wide_.end(), met.wide.begin(), met.wide.end());
+    }
     result_.non_manifold_edges = wide_.size();
+    return sets.take_parents();
   }
 
   /// The third corner of the triangle that a side belongs to.
@@ -52,11 +80,11 @@ class Survey {
   }
 
   /// Counts copies at the edge between their two lowest vertices, so that each counts once.
-  void count_copies(std::uint32_t lower, Sides sides) {
+  void count_copies(std::uint32_t lower, Sides sides, Met& met) const {
     if (sides.size() == 2) {
       const std::uint32_t third = apex(lower, sides[0]);
       if (third < sides[0].upper() || third != apex(lower, sides[1])) return;
-      ++(sides[0].rising() == sides[1].rising() ? result_.copies_along : result_.copies_against);
+      ++(sides[0].rising() == sides[1].rising() ? met.copies_along : met.copies_against);
       return;
     }
     std::vector<std::pair<std::uint32_t, bool>> found;  // apex, direction
@@ -67,20 +95,26 @@ class Survey {
     std::sort(found.begin(), found.end());
     for (std::size_t i = 1; i < found.size(); ++i) {
       if (found[i].first != found[i - 1].first) continue;
-      ++(found[i].second == found[i - 1].second ? result_.copies_along : result_.copies_against);
+      ++(found[i].second == found[i - 1].second ? met.copies_along : met.copies_against);
     }
+  }
+
+  /// Which triangles run against the first of their patch.
+  void tell_directions() {
+    TriangleSets sets(mesh_.triangles.size());
+    edges_.for_each_edge([&](std::uint32_t, Sides sides) {
+      if (sides.size() != 2) return;
+      sets.join(sides[0].triangle(), sides[1].triangle(), sides[0].rising() == sides[1].rising());
+    });
+    result_.turn.resize(mesh_.triangles.size());
+    for (std::uint32_t t = 0; t < result_.turn.size(); ++t)
+      result_.turn[t] = sets.find(t).against ? 1 : 0;
   }
 
   /// Numbers the patches by their first triangles.
   void label_patches() {
-    const std::size_t count = mesh_.triangles.size();
-    patch_.resize(count);
-    if (clash_) result_.turn.resize(count);
-    for (std::uint32_t t = 0; t < count; ++t) {
-      const auto [set, against] = sets_.find(t);
-      patch_[t] = set == t ? patches_++ : patch_[set];
-      if (clash_) result_.turn[t] = against ? 1 : 0;
-    }
+    for (std::uint32_t t = 0; t < patch_.size(); ++t)
+      patch_[t] = patch_[t] == t ? patches_++ : patch_[patch_[t]];
   }
 
   /// In every patch the smaller part is turned to run as the larger one does.
@@ -167,16 +201,17 @@ class Survey {
 
   const Mesh& mesh_;
   EdgeTable edges_;
-  TriangleSets sets_;
+  Surface result_;
   bool clash_ = false;  ///< two neighbours disagree somewhere
   std::vector<Sides> wide_;
   std::vector<std::uint32_t> patch_;  ///< of each triangle
   std::uint32_t patches_ = 0;
-  Surface result_;
 };
 
 }  // namespace
 
-Surface survey(const Mesh& mesh) { return Survey(mesh).run(); }
+Surface survey(const Mesh& mesh, const ParallelFor& parallel_for) {
+  return Survey(mesh, parallel_for).run();
+}
 
 }  // namespace routebench::models

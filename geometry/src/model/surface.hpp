@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "routebench/geometry/parallel.hpp"
 #include "routebench/geometry/types.hpp"
 
 namespace routebench::models {
@@ -32,6 +33,6 @@ struct Surface {
 
 /// Takes a mesh in which no triangle has a corner twice.
 /// Cost  nearly linear; about 30 bytes a triangle for the time of the call.
-[[nodiscard]] Surface survey(const Mesh& mesh);
+[[nodiscard]] Surface survey(const Mesh& mesh, const ParallelFor& parallel_for);
 
 }  // namespace routebench::models

@@ -8,15 +8,6 @@
 namespace routebench::models {
 namespace {
 
-std::uint32_t tag_of(const Point3& p) noexcept {
-  std::uint64_t h = std::bit_cast<std::uint64_t>(p.x) * 0x9E3779B97F4A7C15U;
-  h = std::rotl(h, 29) ^ std::bit_cast<std::uint64_t>(p.y);
-  h *= 0xBF58476D1CE4E5B9U;
-  h = std::rotl(h, 31) ^ std::bit_cast<std::uint64_t>(p.z);
-  h *= 0x94D049BB133111EBU;
-  return static_cast<std::uint32_t>(h >> 32U);
-}
-
 constexpr std::size_t kFewestSlots = 64;
 
 }  // namespace

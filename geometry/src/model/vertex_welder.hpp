@@ -2,6 +2,7 @@
 /// Exact welding: equal corners become one vertex.
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -25,6 +26,16 @@ class VertexWelder {
   /// Replaces negative zeros in `points` by zeros and writes each point's number to `indices`.
   /// Takes at most kBatch finite points; the distinct ones in all must stay below 2^32 - 1.
   void weld(std::span<Point3> points, std::uint32_t* indices);
+
+  /// 32 bits of a hash of a point without negative zeros. Its low bits choose the slot.
+  [[nodiscard]] static std::uint32_t tag_of(const Point3& point) noexcept {
+    std::uint64_t h = std::bit_cast<std::uint64_t>(point.x) * 0x9E3779B97F4A7C15U;
+    h = std::rotl(h, 29) ^ std::bit_cast<std::uint64_t>(point.y);
+    h *= 0xBF58476D1CE4E5B9U;
+    h = std::rotl(h, 31) ^ std::bit_cast<std::uint64_t>(point.z);
+    h *= 0x94D049BB133111EBU;
+    return static_cast<std::uint32_t>(h >> 32U);
+  }
 
   /// The distinct points; the welder is empty afterwards.
   [[nodiscard]] std::vector<Point3> take_vertices();

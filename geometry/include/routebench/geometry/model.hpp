@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "routebench/geometry/parallel.hpp"
 #include "routebench/geometry/types.hpp"
 
 namespace routebench {
@@ -60,8 +61,10 @@ struct Model {
 /// Returns the model moved to z = 0. x and y stay as they are unless they lie further than 1 m from
 /// the origin: then the
 ///        bounding box is moved to begin at x = y = 0 and a warning says so.
+/// The mesh does not depend on the loop that runs it.
 /// Throws Error{kBadInput} in one line for what cannot be used.
 /// Cost   linear in the file and the triangles; simplifying takes far longer than all else.
-[[nodiscard]] Model load_model(const std::string& spec, const ModelOptions& options = {});
+[[nodiscard]] Model load_model(const std::string& spec, const ModelOptions& options = {},
+                               const ParallelFor& parallel_for = serial_for);
 
 }  // namespace routebench

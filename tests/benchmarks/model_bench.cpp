@@ -1,0 +1,167 @@
+/// Speed of reading models, beside that of only looking at their bytes; of welding and of slicing
+/// what was read.
+
+#include <benchmark/benchmark.h>
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <span>
+
+#include "bench_models.hpp"
+#include "model/vertex_welder.hpp"
+#include "routebench/geometry/slice.hpp"
+#include "routebench/geometry/stl.hpp"
+#include "routebench/harness/parallel.hpp"
+#include "scratch_dir.hpp"
+
+namespace {
+
+using namespace routebench;
+namespace fs = std::filesystem;
+
+std::string ascii_stl(const Mesh& mesh) {
+  std::string text = "solid sphere\n";
+  for (const auto& triangle : mesh.triangles) {
+    text += "  facet normal 0.57735026 -0.57735026 0.57735026\n    outer loop\n";
+    for (const std::uint32_t corner : triangle) {
+      const Point3& p = mesh.vertices[corner];
+      std::array<char, 128> line;
+      const int length =
+          std::snprintf(line.data(), line.size(), "      vertex %.9g %.9g %.9g\n", p.x, p.y, p.z);
+      text.append(line.data(), static_cast<std::size_t>(length));
+    }
+    text += "    endloop\n  endfacet\n";
+  }
+  return text + "endsolid sphere\n";
+}
+
+/// A file of a sphere, 150 mm across, that is there as long as the program.
+class SphereFile {
+ public:
+  SphereFile(std::int64_t triangles, bool ascii) : path_(folder_.path() / "model.stl") {
+    const Mesh mesh =
+        load_model("shape:sphere?diameter=150&triangles=" + std::to_string(triangles)).mesh;
+    std::ofstream(path_, std::ios::binary) << (ascii ? ascii_stl(mesh) : stl_bytes(mesh));
+    bytes_ = fs::file_size(path_);
+  }
+  [[nodiscard]] std::string path() const { return path_.string(); }
+  [[nodiscard]] std::size_t bytes() const { return bytes_; }
+
+ private:
+  test::ScratchDir folder_;
+  fs::path path_;
+  std::size_t bytes_ = 0;
+};
+
+/// Large files are written once.
+const SphereFile& sphere_file(std::int64_t triangles, bool ascii) {
+  static std::map<std::pair<std::int64_t, bool>, SphereFile> files;
+  return files.try_emplace({triangles, ascii}, triangles, ascii).first->second;
+}
+
+void count(benchmark::State& state, std::size_t bytes) {
+  state.SetComplexityN(state.range(0));
+  state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(bytes));
+}
+
+/// All bytes of a file, into memory that is there.
+void read_into(const std::string& path, std::string& bytes) {
+  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  const ssize_t length = ::read(file, bytes.data(), bytes.size());
+  if (file < 0 || static_cast<std::size_t>(length) != bytes.size())
+    throw std::runtime_error("cannot read " + path);
+  ::close(file);
+}
+
+/// Reading means welding, mending, the mesh's report and its placement, too.
+template <bool kAscii>
+void read_stl(benchmark::State& state) {
+  const SphereFile& file = sphere_file(state.range(0), kAscii);
+  const ParallelFor parallel_for = parallel_loop(static_cast<int>(state.range(1)));
+  for (auto _ : state) benchmark::DoNotOptimize(load_model(file.path(), {}, parallel_for));
+  count(state, file.bytes());
+}
+void over_sizes(benchmark::internal::Benchmark* bench) {
+  bench->ArgNames({"triangles", "jobs"})
+      ->ArgsProduct({benchmark::CreateRange(1 << 10, 1 << 20, 4), {1}})
+      ->Unit(benchmark::kMillisecond)
+      ->UseRealTime()
+      ->Complexity();
+}
+void two_million(benchmark::internal::Benchmark* bench) {
+  bench->ArgNames({"triangles", "jobs"})
+      ->ArgsProduct({{2'000'000}, {1, 2}})
+      ->Unit(benchmark::kMillisecond)
+      ->UseRealTime();
+}
+BENCHMARK(read_stl<false>)->Name("read_binary_stl")->Apply(over_sizes);
+BENCHMARK(read_stl<true>)->Name("read_ascii_stl")->Apply(over_sizes);
+BENCHMARK(read_stl<false>)->Name("read_large_binary_stl")->Apply(two_million);
+BENCHMARK(read_stl<true>)->Name("read_large_ascii_stl")->Apply(two_million);
+
+/// What the system takes to hand over the bytes of the same file.
+void copy_large_binary_stl(benchmark::State& state) {
+  const SphereFile& file = sphere_file(state.range(0), false);
+  std::string bytes(file.bytes(), '\0');
+  for (auto _ : state) {
+    read_into(file.path(), bytes);
+    benchmark::DoNotOptimize(bytes.data());
+  }
+  count(state, file.bytes());
+}
+BENCHMARK(copy_large_binary_stl)->Arg(2'000'000)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+/// What it takes to read the same text and count its lines.
+void scan_large_ascii_stl(benchmark::State& state) {
+  const SphereFile& file = sphere_file(state.range(0), true);
+  std::string bytes(file.bytes(), '\0');
+  for (auto _ : state) {
+    read_into(file.path(), bytes);
+    benchmark::DoNotOptimize(std::count(bytes.begin(), bytes.end(), '\n'));
+  }
+  count(state, file.bytes());
+}
+BENCHMARK(scan_large_ascii_stl)->Arg(2'000'000)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+/// From a binary file to 750 layers.
+void read_and_slice(benchmark::State& state) {
+  const SphereFile& file = sphere_file(state.range(0), false);
+  const ParallelFor parallel_for = parallel_loop(static_cast<int>(state.range(1)));
+  for (auto _ : state) {
+    const Model model = load_model(file.path(), {}, parallel_for);
+    benchmark::DoNotOptimize(slice_mesh(model.mesh, {}, model.spec, parallel_for));
+  }
+  count(state, file.bytes());
+}
+BENCHMARK(read_and_slice)->Apply(two_million);
+
+/// Equal corners become one vertex; what the readers do on the way.
+void weld_corners(benchmark::State& state) {
+  using models::VertexWelder;
+  const Mesh mesh = bench::sphere(state.range(0)).mesh;
+  std::vector<Point3> corners;
+  for (const auto& triangle : mesh.triangles)
+    for (const std::uint32_t corner : triangle) corners.push_back(mesh.vertices[corner]);
+  std::vector<std::uint32_t> numbers(corners.size());
+  for (auto _ : state) {
+    VertexWelder welder(mesh.triangles.size() / 2);
+    for (std::size_t i = 0; i < corners.size(); i += VertexWelder::kBatch)
+      welder.weld(std::span(corners).subspan(i, std::min(VertexWelder::kBatch, corners.size() - i)),
+                  numbers.data() + i);
+    benchmark::DoNotOptimize(welder.take_vertices());
+  }
+  state.SetComplexityN(state.range(0));
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(corners.size()));
+}
+BENCHMARK(weld_corners)
+    ->RangeMultiplier(4)
+    ->Range(1 << 10, 1 << 20)
+    ->Unit(benchmark::kMillisecond)
+    ->Complexity();
+
+}  // namespace
