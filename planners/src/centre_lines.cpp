@@ -243,6 +243,15 @@ class StrokeCutter {
   std::vector<Stroke>& strokes_;
 };
 
+/// Smaller parts have no room for any stroke: neither for the shortest and narrowest one nor for
+/// the least dot.
+double least_area_mm2(const CentreLineRule& rule) {
+  const auto disc = [](double width_mm) { return std::numbers::pi / 4 * width_mm * width_mm; };
+  const double line = rule.min_width_mm * std::max(rule.min_length_mm - rule.min_width_mm, 0.0) +
+                      disc(rule.min_width_mm);
+  return std::min(line, disc(rule.min_dot_mm));
+}
+
 Ring moved(Ring ring, Point2 by) {
   for (Point2& p : ring) p = p + by;
   return ring;
@@ -257,11 +266,14 @@ std::vector<Stroke> centre_lines(const Polygons& thin, const CentreLineRule& rul
   // Relative to a corner, so that the place does not matter.
   const Point2 origin = bounding_box(thin).lower;
   Polygons near_origin;
+  const double least_mm2 = least_area_mm2(rule);
   for (const Polygon& polygon : thin) {
+    if (area_mm2(polygon) < least_mm2) continue;
     Polygon& own = near_origin.emplace_back();
     own.outer = moved(polygon.outer, Point2{} - origin);
     for (const Ring& hole : polygon.holes) own.holes.push_back(moved(hole, Point2{} - origin));
   }
+  if (near_origin.empty()) return strokes;
   const EdgeGrid all_edges(near_origin);
   for (const Polygon& polygon : without_thin_parts(near_origin, rule.min_width_mm)) {
     stop_if_asked(context);
