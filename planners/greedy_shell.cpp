@@ -24,7 +24,7 @@ using namespace routebench;
 enum class SearchKind { kGrid, kNaive };
 enum class Chain { kGreedy, kLinear };
 enum class Order { kInsideOut, kOutsideIn, kAny };
-enum class Thin { kDrop, kDouble };
+enum class Thin { kAuto, kDrop, kDouble };
 enum class Gaps { kFill, kLeave };
 
 /// Sides of a wall nearer to each other than this share of a spacing: both of them would be more
@@ -37,7 +37,7 @@ struct ShellParams {
   Chain chain = Chain::kGreedy;
   SeamParams seam;
   Order order = Order::kInsideOut;
-  Thin thin = Thin::kDouble;
+  Thin thin = Thin::kAuto;
   Gaps gaps = Gaps::kFill;
   bool small_twice = false;
 
@@ -52,10 +52,11 @@ struct ShellParams {
           {"outside_in", Order::kOutsideIn},
           {"any", Order::kAny}},
          "of an island's walls; any takes what is nearest, of any island");
-    bind("thin", thin, {{"drop", Thin::kDrop}, {"double", Thin::kDouble}},
-         "where the two sides of a wall come nearer than two thirds of a spacing: no wall (gaps "
-         "then "
-         "lays one line), or there and back");
+    bind("thin", thin,
+         {{"auto", Thin::kAuto}, {"drop", Thin::kDrop}, {"double", Thin::kDouble}},
+         "where the two sides of a wall come nearer than two thirds of a spacing: drop the wall "
+         "(gaps then lays one line), or double, there and back; auto does what lays more nearly as "
+         "much as the place needs");
     bind("gaps", gaps, {{"fill", Gaps::kFill}, {"leave", Gaps::kLeave}},
          "parts and strips that are too narrow for a wall: a line of their own width along the "
          "middle, or nothing");
@@ -339,6 +340,10 @@ class GreedyShell final : public Planner {
       Pool pool;
       if (params_.thin == Thin::kDrop)
         region = without_thin_parts(region, kNearSides * context.spacing_mm);
+      else if (params_.thin == Thin::kAuto && params_.gaps == Gaps::kFill)
+        region = without_strips(
+            region, (&region == &regions.front() ? context.line_width_mm : context.spacing_mm) / 2,
+            kNearSides * context.spacing_mm, context);
       for (const Ring& ring : rings_of(region)) pool.add(ring, twice);
       if (pool.size() > 0) island.pools.push_back(std::move(pool));
     }
@@ -351,7 +356,7 @@ class GreedyShell final : public Planner {
   /// The widest place that no wall is laid in.
   [[nodiscard]] double widest_mm(const PlanContext& context) const {
     return context.line_width_mm +
-           (params_.thin == Thin::kDrop ? kNearSides * context.spacing_mm : 0);
+           (params_.thin != Thin::kDouble ? kNearSides * context.spacing_mm : 0);
   }
 
   void lay(const Pool& pool, const PlanContext& context, Point2& nozzle, Route& route) const {
