@@ -52,8 +52,7 @@ struct ShellParams {
           {"outside_in", Order::kOutsideIn},
           {"any", Order::kAny}},
          "of an island's walls; any takes what is nearest, of any island");
-    bind("thin", thin,
-         {{"auto", Thin::kAuto}, {"drop", Thin::kDrop}, {"double", Thin::kDouble}},
+    bind("thin", thin, {{"auto", Thin::kAuto}, {"drop", Thin::kDrop}, {"double", Thin::kDouble}},
          "where the two sides of a wall come nearer than two thirds of a spacing: drop the wall "
          "(gaps then lays one line), or double, there and back; auto does what lays more nearly as "
          "much as the place needs");

@@ -13,8 +13,8 @@
 namespace routebench {
 namespace {
 
-/// A line is laid in a strip if it gives at least so much of the material that is needed. In shorter
-/// strips it lacks its ends, and it costs a travel.
+/// A line is laid in a strip if it gives at least so much of the material that is needed. In
+/// shorter strips it lacks its ends, and it costs a travel.
 constexpr double kEnough = 0.85;
 
 }  // namespace
@@ -138,8 +138,8 @@ Polygons without_strips(const Polygons& region, double reach_mm, double near_mm,
     if (area < least_mm2 * 1e-3) continue;
     const double length_mm = area / width_mm;
     const bool has_ends = part.holes.empty();
-    const double needed = area + 2 * length_mm * reach_mm +
-                          (has_ends ? std::numbers::pi * reach_mm * reach_mm : 0);
+    const double needed =
+        area + 2 * length_mm * reach_mm + (has_ends ? std::numbers::pi * reach_mm * reach_mm : 0);
     const double twice = perimeter_mm(Polygons{part}) * context.spacing_mm;
     const double once =
         (width_mm + context.spacing_mm) * std::max(length_mm - (has_ends ? width_mm : 0), 0.0);

@@ -211,7 +211,8 @@ TEST(GreedyShell, AStripBetweenWallsIsFilled) {
   const Route route = plan(layer_of({{test::rectangle(0, 0, 20, width_mm), {}}}), context_for(2));
   ASSERT_EQ(route.strokes.size(), 2U);
   EXPECT_EQ(route.strokes[0].points.front(), route.strokes[0].points.back());
-  EXPECT_NEAR(route.strokes[1].width_mm, open_mm, 0.01);
+  // Its bead overlaps with the walls' as they would with each other.
+  EXPECT_NEAR(route.strokes[1].width_mm, open_mm + kWidth - kSpacing, 0.01);
   for (const Point2 p : route.strokes[1].points) EXPECT_NEAR(p.y, width_mm / 2, 0.01);
   // With one wall asked for, the strip belongs to the inside.
   EXPECT_EQ(
@@ -232,8 +233,9 @@ TEST(GreedyShell, FillingGapsLeavesTheWallsAsTheyAreAndCoversMore) {
     });
     return walls;
   };
-  const ParamSet leave{{"gaps", word("leave")}, {"seam", word("min_x")}};
-  const ParamSet fill{{"seam", word("min_x")}};
+  const ParamSet fill{{"thin", word("double")}, {"seam", word("min_x")}};
+  ParamSet leave = fill;
+  leave["gaps"] = word("leave");
   int filled = 0;
   for (const Layer& layer : trial_layers()) {
     const Route walls = plan(layer, context_for(3), leave);
@@ -265,7 +267,8 @@ TEST(WallGaps, AreWhatNoWallReaches) {
       }
     }
   const Polygon square{test::rectangle(0, 0, 10, 10), {}};
-  const WallGaps none = wall_gaps({square}, wall_regions(square, context_for(3)), 3, context_for(3));
+  const WallGaps none =
+      wall_gaps({square}, wall_regions(square, context_for(3)), 3, context_for(3));
   EXPECT_TRUE(none.outside.empty() && none.between.empty());
 }
 

@@ -28,7 +28,8 @@ struct WallGaps {
 /// of it.
 ///
 /// Takes   polygons and their wall_regions, fewer than `count` if no more fit.
-/// Returns polygons, with slivers of a few micrometres among them. A line's own place is taken to be
+/// Returns polygons, with slivers of a few micrometres among them. A line's own place is taken to
+/// be
 ///         a spacing wide, but up to the outline all that its bead reaches.
 /// Cost    linear where nothing is narrow; else two offsets a wall and two Boolean operations.
 [[nodiscard]] WallGaps wall_gaps(const Polygons& polygons, const std::vector<Polygons>& regions,
