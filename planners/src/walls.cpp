@@ -6,6 +6,7 @@
 #include <numbers>
 #include <utility>
 
+#include "inset_proof.hpp"
 #include "routebench/geometry/region.hpp"
 #include "routebench/geometry/vec.hpp"
 #include "routebench/planning/centre_lines.hpp"
@@ -86,7 +87,9 @@ Polygons gaps_before(const Polygons& polygons, const std::vector<Polygons>& regi
     const Polygons& region = wall < regions.size() ? regions[wall] : none;
     // Where nothing is narrow, the wall's place grows back to where it came from.
     const double step_mm = wall == 0 ? context.line_width_mm / 2 : context.spacing_mm;
-    if (area_mm2(before) - grown_area_mm2(region, step_mm) < least_stroke_mm2(context)) continue;
+    if (area_mm2(before) - grown_area_mm2(region, step_mm) < least_stroke_mm2(context) ||
+        grows_back(region, before, step_mm))
+      continue;
     gap_mm2 += add(wall == 0 ? before : offset(before, -context.spacing_mm / 2));
     gap_mm2 -= add(offset(region, wall == 0 ? step_mm : context.spacing_mm / 2));
   }
@@ -130,7 +133,9 @@ Polygons without_strips(const Polygons& region, double reach_mm, double near_mm,
                         const PlanContext& context) {
   const Polygons cores = offset(region, -near_mm / 2);
   const double least_mm2 = least_stroke_mm2(context) / 4;
-  if (area_mm2(region) - grown_area_mm2(cores, near_mm / 2) < least_mm2) return region;
+  if (area_mm2(region) - grown_area_mm2(cores, near_mm / 2) < least_mm2 ||
+      grows_back(cores, region, near_mm / 2))
+    return region;
   const Polygons wide = intersect(offset(cores, near_mm / 2), region);
   Polygons strips;
   for (Polygon& part : subtract(region, wide)) {
