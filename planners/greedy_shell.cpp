@@ -332,17 +332,19 @@ class GreedyShell final : public Planner {
   [[nodiscard]] Island walls_of(const Polygon& polygon, const PlanContext& context) const {
     std::vector<Polygons> regions = wall_regions(polygon, context);
     Island island;
-    for (Polygons& region : regions) {
-      const bool innermost = &region == &regions.back();
+    const double near_mm = kNearSides * context.spacing_mm;
+    for (std::size_t wall = 0; wall < regions.size(); ++wall) {
+      Polygons& region = regions[wall];
+      const bool innermost = wall + 1 == regions.size();
       const bool twice =
           params_.small_twice && innermost && offset(region, -context.spacing_mm).empty();
       Pool pool;
       if (params_.thin == Thin::kDrop)
-        region = without_thin_parts(region, kNearSides * context.spacing_mm);
+        region = without_thin_parts(region, near_mm);
       else if (params_.thin == Thin::kAuto && params_.gaps == Gaps::kFill)
-        region = without_strips(
-            region, (&region == &regions.front() ? context.line_width_mm : context.spacing_mm) / 2,
-            kNearSides * context.spacing_mm, context);
+        region = without_strips(region, innermost ? Polygons{} : regions[wall + 1],
+                                (wall == 0 ? context.line_width_mm : context.spacing_mm) / 2,
+                                near_mm, context);
       for (const Ring& ring : rings_of(region)) pool.add(ring, twice);
       if (pool.size() > 0) island.pools.push_back(std::move(pool));
     }

@@ -17,6 +17,9 @@ namespace {
 /// A line is laid in a strip if it gives at least so much of the material that is needed. In
 /// shorter strips it lacks its ends, and it costs a travel.
 constexpr double kEnough = 0.85;
+/// How much farther a wall may be from the one before than it should, where no line fits between
+/// them: at the bottom of a stub about a sixth of a millimetre deep.
+constexpr double kStubMm = 0.03;
 
 }  // namespace
 
@@ -88,7 +91,7 @@ Polygons gaps_before(const Polygons& polygons, const std::vector<Polygons>& regi
     // Where nothing is narrow, the wall's place grows back to where it came from.
     const double step_mm = wall == 0 ? context.line_width_mm / 2 : context.spacing_mm;
     if (area_mm2(before) - grown_area_mm2(region, step_mm) < least_stroke_mm2(context) ||
-        grows_back(region, before, step_mm))
+        grows_back(region, before, step_mm, kStubMm))
       continue;
     gap_mm2 += add(wall == 0 ? before : offset(before, -context.spacing_mm / 2));
     gap_mm2 -= add(offset(region, wall == 0 ? step_mm : context.spacing_mm / 2));
@@ -129,12 +132,15 @@ double narrowest_line_mm(const PlanContext& context) {
   return context.line_width_mm / 3;  // less is left to what beads spread
 }
 
-Polygons without_strips(const Polygons& region, double reach_mm, double near_mm,
-                        const PlanContext& context) {
+Polygons without_strips(const Polygons& region, const Polygons& next, double reach_mm,
+                        double near_mm, const PlanContext& context) {
+  // A strip is several spacings long. So the next wall, if it goes everywhere, is proof enough.
+  const double slack_mm = context.spacing_mm;
+  if (grows_back(next, region, context.spacing_mm, slack_mm)) return region;
   const Polygons cores = offset(region, -near_mm / 2);
   const double least_mm2 = least_stroke_mm2(context) / 4;
   if (area_mm2(region) - grown_area_mm2(cores, near_mm / 2) < least_mm2 ||
-      grows_back(cores, region, near_mm / 2))
+      grows_back(cores, region, near_mm / 2, slack_mm))
     return region;
   const Polygons wide = intersect(offset(cores, near_mm / 2), region);
   Polygons strips;
