@@ -132,6 +132,16 @@ double narrowest_line_mm(const PlanContext& context) {
   return context.line_width_mm / 3;  // less is left to what beads spread
 }
 
+double left_inside_mm(const Polygon& region, const PlanContext& context) {
+  constexpr double kLeastMm = 0.01;
+  const double overlap_mm = context.line_width_mm - context.spacing_mm;
+  const double line_mm = narrowest_line_mm(context) - overlap_mm;
+  const double left_mm = strip_width_mm(region) - context.spacing_mm;
+  if (left_mm < kLeastMm || left_mm >= line_mm) return 0;
+  // No wider anywhere.
+  return offset({region}, -(context.spacing_mm + line_mm) / 2).empty() ? left_mm : 0;
+}
+
 Polygons without_strips(const Polygons& region, const Polygons& next, double reach_mm,
                         double near_mm, const PlanContext& context) {
   // A strip is several spacings long. So the next wall, if it goes everywhere, is proof enough.

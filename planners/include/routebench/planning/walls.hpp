@@ -44,6 +44,11 @@ struct WallGaps {
 /// No narrower line is laid in a gap: a third of a line width.
 [[nodiscard]] double narrowest_line_mm(const PlanContext& context);
 
+/// Width of what a wall leaves open inside itself, if its region is a strip throughout and that is
+/// too narrow for the narrowest line; else 0. A wall half as much wider, a quarter of it further
+/// in, leaves nothing.
+[[nodiscard]] double left_inside_mm(const Polygon& region, const PlanContext& context);
+
 /// A wall's region without the strips that one line serves better than a wall there and back: parts
 /// narrower than near_mm, in which the amount of material of a line in the middle, as wide as the
 /// strip and the wall's reach on both sides, is nearer to what is needed than that of the wall. A
