@@ -24,7 +24,7 @@ using namespace routebench;
 enum class SearchKind { kGrid, kNaive };
 enum class Chain { kGreedy, kLinear };
 enum class Order { kInsideOut, kOutsideIn, kAny };
-enum class Thin { kDrop, kDouble };
+enum class Thin { kAuto, kDrop, kDouble };
 enum class Gaps { kFill, kLeave };
 
 /// Sides of a wall nearer to each other than this share of a spacing: both of them would be more
@@ -37,7 +37,7 @@ struct ShellParams {
   Chain chain = Chain::kGreedy;
   SeamParams seam;
   Order order = Order::kInsideOut;
-  Thin thin = Thin::kDouble;
+  Thin thin = Thin::kAuto;
   Gaps gaps = Gaps::kFill;
   bool small_twice = false;
 
@@ -52,10 +52,10 @@ struct ShellParams {
           {"outside_in", Order::kOutsideIn},
           {"any", Order::kAny}},
          "of an island's walls; any takes what is nearest, of any island");
-    bind("thin", thin, {{"drop", Thin::kDrop}, {"double", Thin::kDouble}},
-         "where the two sides of a wall come nearer than two thirds of a spacing: no wall (gaps "
-         "then "
-         "lays one line), or there and back");
+    bind("thin", thin, {{"auto", Thin::kAuto}, {"drop", Thin::kDrop}, {"double", Thin::kDouble}},
+         "where the two sides of a wall come nearer than two thirds of a spacing: drop the wall "
+         "(gaps then lays one line), or double, there and back; auto does what lays more nearly as "
+         "much as the place needs");
     bind("gaps", gaps, {{"fill", Gaps::kFill}, {"leave", Gaps::kLeave}},
          "parts and strips that are too narrow for a wall: a line of their own width along the "
          "middle, or nothing");
@@ -68,8 +68,9 @@ struct ShellParams {
 /// to the next point of its ring.
 class Pool {
  public:
-  void add(const Ring& ring, bool twice_round) {
+  void add(const Ring& ring, double width_mm, bool twice_round) {
     ring_begin_.push_back(size());
+    width_mm_.push_back(width_mm);
     twice_round_.push_back(twice_round);
     points_.insert(points_.end(), ring.begin(), ring.end());
     ring_of_.resize(points_.size(), static_cast<std::uint32_t>(rings() - 1));
@@ -78,7 +79,7 @@ class Pool {
   void add(const Pool& other) {
     for (std::size_t ring = 0; ring < other.rings(); ++ring) {
       const auto begin = other.points_.begin();
-      add(Ring(begin + other.ring_begin(ring), begin + other.ring_end(ring)),
+      add(Ring(begin + other.ring_begin(ring), begin + other.ring_end(ring)), other.width_mm_[ring],
           other.twice_round_[ring]);
     }
   }
@@ -90,6 +91,10 @@ class Pool {
   [[nodiscard]] std::uint32_t ring_begin(std::size_t ring) const { return ring_begin_[ring]; }
   [[nodiscard]] std::uint32_t ring_end(std::size_t ring) const {
     return ring + 1 < rings() ? ring_begin_[ring + 1] : size();
+  }
+  /// Width of the wall that a segment belongs to.
+  [[nodiscard]] double width_mm(std::uint32_t segment) const {
+    return width_mm_[ring_of_[segment]];
   }
   /// Whether the ring that a segment belongs to is laid twice.
   [[nodiscard]] bool twice_round(std::uint32_t segment) const {
@@ -114,6 +119,7 @@ class Pool {
   std::vector<Point2> points_;
   std::vector<std::uint32_t> ring_of_;
   std::vector<std::uint32_t> ring_begin_;
+  std::vector<double> width_mm_;
   std::vector<bool> twice_round_;
 };
 
@@ -215,7 +221,7 @@ void walk(const Pool& pool, Search search, const PlanContext& context, Point2& n
   while (const auto segment = search.next(nozzle, follower)) {
     stop_if_asked(context);
     if (segment != follower)
-      route.strokes.push_back({{pool.start(*segment)}, context.line_width_mm});
+      route.strokes.push_back({{pool.start(*segment)}, pool.width_mm(*segment)});
     laid[*segment] = true;
     search.remove(*segment);
     const std::uint32_t next = pool.next(*segment);
@@ -334,14 +340,27 @@ class GreedyShell final : public Planner {
   [[nodiscard]] Island walls_of(const Polygon& polygon, const PlanContext& context) const {
     std::vector<Polygons> regions = wall_regions(polygon, context);
     Island island;
-    for (Polygons& region : regions) {
-      const bool innermost = &region == &regions.back();
+    const double near_mm = kNearSides * context.spacing_mm;
+    for (std::size_t wall = 0; wall < regions.size(); ++wall) {
+      Polygons& region = regions[wall];
+      const bool innermost = wall + 1 == regions.size();
       const bool twice =
           params_.small_twice && innermost && offset(region, -context.spacing_mm).empty();
       Pool pool;
       if (params_.thin == Thin::kDrop)
-        region = without_thin_parts(region, kNearSides * context.spacing_mm);
-      for (const Ring& ring : rings_of(region)) pool.add(ring, twice);
+        region = without_thin_parts(region, near_mm);
+      else if (params_.thin == Thin::kAuto && params_.gaps == Gaps::kFill)
+        region = without_strips(region, innermost ? Polygons{} : regions[wall + 1],
+                                (wall == 0 ? context.line_width_mm : context.spacing_mm) / 2,
+                                near_mm, context);
+      const bool next_is_wall = std::cmp_less(wall + 1, context.perimeters);
+      for (const Polygon& part : region) {
+        const double left_mm =
+            params_.gaps == Gaps::kFill && next_is_wall ? left_inside_mm(part, context) : 0;
+        for (const Ring& ring :
+             rings_of(left_mm > 0 ? offset({part}, -left_mm / 4) : Polygons{part}))
+          pool.add(ring, context.line_width_mm + left_mm / 2, twice);
+      }
       if (pool.size() > 0) island.pools.push_back(std::move(pool));
     }
     if (params_.order == Order::kInsideOut) std::reverse(island.pools.begin(), island.pools.end());
@@ -353,7 +372,7 @@ class GreedyShell final : public Planner {
   /// The widest place that no wall is laid in.
   [[nodiscard]] double widest_mm(const PlanContext& context) const {
     return context.line_width_mm +
-           (params_.thin == Thin::kDrop ? kNearSides * context.spacing_mm : 0);
+           (params_.thin != Thin::kDouble ? kNearSides * context.spacing_mm : 0);
   }
 
   void lay(const Pool& pool, const PlanContext& context, Point2& nozzle, Route& route) const {

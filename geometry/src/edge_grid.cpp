@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "routebench/geometry/grid.hpp"
 #include "routebench/geometry/region.hpp"
@@ -178,15 +179,27 @@ bool EdgeGrid::covers(Point2 a, Point2 b) const {
 
 std::optional<double> EdgeGrid::distance_to_edge_mm(Point2 p, double limit_mm) const {
   if (edges_.empty()) return std::nullopt;
-  std::optional<double> nearest;
+  Point2 foot;
+  double nearest_squared = std::numeric_limits<double>::infinity();
   // Widening boxes around p: most questions end in the first.
   for (double reach = std::min(limit_mm, cell_mm_);; reach = std::min(limit_mm, 2 * reach)) {
-    for (const std::uint32_t e : edges_near(p, p, reach)) {
-      const double d = distance(p, nearest_on_segment(p, edges_[e].a, edges_[e].b));
-      if (d <= limit_mm && (!nearest || d < *nearest)) nearest = d;
-    }
-    if ((nearest && *nearest <= reach) || reach >= limit_mm) return nearest;
+    // An edge in several cells is looked at more than once, which costs less than to sort them.
+    visit_cells(p, p, reach, [&](std::int64_t cell) {
+      const auto c = static_cast<std::size_t>(cell);
+      for (std::uint32_t i = cells_.begin[c]; i < cells_.begin[c + 1]; ++i) {
+        const Edge& edge = edges_[cells_.items[i]];
+        const Point2 candidate = nearest_on_segment(p, edge.a, edge.b);
+        const double squared = squared_distance(p, candidate);
+        if (squared >= nearest_squared) continue;
+        nearest_squared = squared;
+        foot = candidate;
+      }
+    });
+    if (nearest_squared <= reach * reach || reach >= limit_mm) break;
   }
+  if (!(nearest_squared < std::numeric_limits<double>::infinity())) return std::nullopt;
+  const double nearest_mm = distance(p, foot);
+  return nearest_mm <= limit_mm ? std::optional(nearest_mm) : std::nullopt;
 }
 
 }  // namespace routebench

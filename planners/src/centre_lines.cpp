@@ -18,7 +18,8 @@ namespace routebench {
 namespace {
 
 constexpr double kWidthRatio = 1.25;  // of the places that one stroke takes
-constexpr double kStraightMm = 0.004;
+constexpr double kStraightMm = 0.002;
+constexpr double kTouchMm = 0.004;
 // A part is compact if it is at most so many of the greatest widths long.
 constexpr double kCompact = 2;
 constexpr int kAxisSteps = 12;  // either way from its centre
@@ -220,7 +221,7 @@ class StrokeCutter {
     if (piece_mm <= 0) return;
     const Point2 way = (1 / piece_mm) * (end - before);
     const auto fits = [&](double mm) {
-      return !edges_.distance_to_edge_mm(end + mm * way, width_mm / 2 - kStraightMm);
+      return !edges_.distance_to_edge_mm(end + mm * way, width_mm / 2 - kTouchMm);
     };
     // No step is longer than the place is clear of the boundary.
     double clear = 0, blocked = 0;
@@ -243,8 +244,17 @@ class StrokeCutter {
   std::vector<Stroke>& strokes_;
 };
 
+/// Smaller parts have no room for any stroke: neither for the shortest and narrowest one nor for
+/// the least dot.
+double least_area_mm2(const CentreLineRule& rule) {
+  const auto disc = [](double width_mm) { return std::numbers::pi / 4 * width_mm * width_mm; };
+  const double line = rule.min_width_mm * std::max(rule.min_length_mm - rule.min_width_mm, 0.0) +
+                      disc(rule.min_width_mm);
+  return std::min(line, disc(rule.min_dot_mm));
+}
+
 Ring moved(Ring ring, Point2 by) {
-  for (Point2& p : ring) p = p + by;
+  for (Point2& p : ring) p = snap(p + by);
   return ring;
 }
 
@@ -257,21 +267,23 @@ std::vector<Stroke> centre_lines(const Polygons& thin, const CentreLineRule& rul
   // Relative to a corner, so that the place does not matter.
   const Point2 origin = bounding_box(thin).lower;
   Polygons near_origin;
+  const double least_mm2 = least_area_mm2(rule);
   for (const Polygon& polygon : thin) {
+    if (area_mm2(polygon) < least_mm2) continue;
     Polygon& own = near_origin.emplace_back();
     own.outer = moved(polygon.outer, Point2{} - origin);
     for (const Ring& hole : polygon.holes) own.holes.push_back(moved(hole, Point2{} - origin));
   }
-  const EdgeGrid all_edges(near_origin);
+  if (near_origin.empty()) return strokes;
+  // Beads are as wide as the polygons let them be, not their smoothed copies.
+  const EdgeGrid edges(near_origin);
+  StrokeCutter cutter(rule, edges, origin, strokes);
   for (const Polygon& polygon : without_thin_parts(near_origin, rule.min_width_mm)) {
     stop_if_asked(context);
     const Box2 box = bounding_box({polygon});
     if (distance(box.lower, box.upper) < std::min(rule.min_length_mm, rule.min_dot_mm)) continue;
-    const EdgeGrid edges({polygon});
-    StrokeCutter cutter(rule, edges, origin, strokes);
     const std::size_t before = strokes.size();
-    // Beads of compact parts are as large as the polygons let them be, not their smoothed copies.
-    if (!StrokeCutter(rule, all_edges, origin, strokes).cut_compact(polygon))
+    if (!cutter.cut_compact(polygon))
       for (const MiddleLine& line : middle_lines(polygon, edges, rule.max_width_mm))
         cutter.cut(line);
     if (strokes.size() == before) cutter.dot(polygon);

@@ -19,6 +19,7 @@ constexpr int kPruningRounds = 4;
 constexpr double kWiderMm = 0.01;  // less is not wider
 // Chords between samples that are no farther apart than the polygon is wide run nearly across.
 constexpr double kLeastStepMm = 0.05;
+constexpr int kBendSteps = 12;  // in which the way round a bend is sought
 
 /// The axis of one polygon while spurs are taken from it.
 class PrunedAxis {
@@ -123,6 +124,26 @@ class PrunedAxis {
     if (spur.reach_mm < kSpurRadii * radius_mm(centre)) spurs.push_back(std::move(spur));
   }
 
+  /// The widest place between the inner side of a bend, from which a spur into the outer corner was
+  /// taken, and that spur. Straight from chord to chord a line would come nearer to the inner side
+  /// than anywhere else.
+  [[nodiscard]] Point2 round_bend(const ChordalAxis::Triangle& bend) const {
+    Point2 corner_side;
+    for (const std::uint32_t chord : bend.chords)
+      if (!is_left_[chord]) corner_side = axis_.chords[chord].middle;
+    const Point2 inner_side = 3 * bend.centre - 2 * corner_side;
+    Point2 best;
+    double widest_mm = -1;
+    for (int i = kBendSteps / 2; i <= kBendSteps; ++i) {
+      const Point2 p = lerp(inner_side, corner_side, static_cast<double>(i) / kBendSteps);
+      const double mm = radius_mm(p);
+      if (mm <= widest_mm) break;  // it rises up to the middle
+      best = p;
+      widest_mm = mm;
+    }
+    return best;
+  }
+
   MiddleLine line_from(std::uint32_t triangle, std::uint32_t chord,
                        std::vector<bool>& is_open) const {
     MiddleLine line;
@@ -137,6 +158,7 @@ class PrunedAxis {
       go_to(axis_.chords[chord].middle);
       triangle = across(chord, triangle);
       if (degree_[triangle] != 2) break;
+      if (axis_.triangles[triangle].count == 3) go_to(round_bend(axis_.triangles[triangle]));
       chord = other_chord(triangle, chord);
       if (!is_open[chord]) {  // round a loop
         go_to(axis_.chords[chord].middle);

@@ -3,13 +3,26 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <numbers>
 #include <utility>
 
+#include "inset_proof.hpp"
 #include "routebench/geometry/region.hpp"
 #include "routebench/geometry/vec.hpp"
 #include "routebench/planning/centre_lines.hpp"
 
 namespace routebench {
+namespace {
+
+/// A line is laid in a strip if it gives at least so much of the material that is needed. In
+/// shorter strips it lacks its ends, and it costs a travel.
+constexpr double kEnough = 0.85;
+/// How much farther a wall may be from the one before than it should, where no line fits between
+/// them: at the bottom of a stub about a sixth of a millimetre deep.
+constexpr double kStubMm = 0.03;
+
+}  // namespace
+
 std::vector<Polygons> wall_regions(const Polygon& island, const PlanContext& context) {
   std::vector<Polygons> regions;
   double step_mm = context.line_width_mm / 2;
@@ -44,10 +57,24 @@ double grown_area_mm2(const Polygons& polygons, double distance_mm) {
   return area + distance_mm * (length + distance_mm * corners);
 }
 
-Polygons wall_gaps(const Polygons& polygons, const std::vector<Polygons>& regions, int count,
-                   const PlanContext& context) {
-  // The least stroke: half as long as a line is wide, and a third as wide.
-  const double least_mm2 = context.line_width_mm * context.line_width_mm / 6;
+namespace {
+
+/// The least stroke: half as long as a line is wide, and a third as wide.
+double least_stroke_mm2(const PlanContext& context) {
+  return context.line_width_mm * context.line_width_mm / 6;
+}
+
+/// Mean width of a polygon that is a strip: of its sides' length, its ends are none.
+double strip_width_mm(const Polygon& strip) {
+  const double area = area_mm2(strip), half_mm = perimeter_mm(Polygons{strip}) / 2;
+  if (!strip.holes.empty()) return area / half_mm;
+  // length x width = area, length + width = half the perimeter
+  return 2 * area / (half_mm + std::sqrt(std::max(half_mm * half_mm - 4 * area, 0.0)));
+}
+
+/// What walls first..count leave open, as described for WallGaps.
+Polygons gaps_before(const Polygons& polygons, const std::vector<Polygons>& regions,
+                     std::size_t first, std::size_t count, const PlanContext& context) {
   // Each area holds the next one: what is open before a wall, and what that wall's beads reach. So
   // what lies in an odd number of them is a gap.
   std::vector<Ring> rings;
@@ -56,33 +83,91 @@ Polygons wall_gaps(const Polygons& polygons, const std::vector<Polygons>& region
     return area_mm2(area);
   };
   double gap_mm2 = 0;
-  const auto reach_of = [&](std::size_t wall) {
-    return (wall == 0 ? context.line_width_mm : context.spacing_mm) / 2;
-  };
-  for (std::size_t wall = 0; wall <= regions.size() && std::cmp_less(wall, count); ++wall) {
+  for (std::size_t wall = first; wall < std::min(count, regions.size() + 1); ++wall) {
     stop_if_asked(context);
     const Polygons& before = wall == 0 ? polygons : regions[wall - 1];
     const Polygons none;
     const Polygons& region = wall < regions.size() ? regions[wall] : none;
     // Where nothing is narrow, the wall's place grows back to where it came from.
-    const double step_mm = wall == 0 ? reach_of(0) : context.spacing_mm;
-    if (area_mm2(before) - grown_area_mm2(region, step_mm) < least_mm2) continue;
-    gap_mm2 += add(wall == 0 ? before : offset(before, -reach_of(wall)));
-    gap_mm2 -= add(offset(region, reach_of(wall)));
+    const double step_mm = wall == 0 ? context.line_width_mm / 2 : context.spacing_mm;
+    if (area_mm2(before) - grown_area_mm2(region, step_mm) < least_stroke_mm2(context) ||
+        grows_back(region, before, step_mm, kStubMm))
+      continue;
+    gap_mm2 += add(wall == 0 ? before : offset(before, -context.spacing_mm / 2));
+    gap_mm2 -= add(offset(region, wall == 0 ? step_mm : context.spacing_mm / 2));
   }
-  if (gap_mm2 < least_mm2) return {};
+  if (gap_mm2 < least_stroke_mm2(context)) return {};
   return polygons_from_rings(std::move(rings), FillRule::kEvenOdd);
+}
+
+}  // namespace
+
+WallGaps wall_gaps(const Polygons& polygons, const std::vector<Polygons>& regions, int count,
+                   const PlanContext& context) {
+  const auto walls = static_cast<std::size_t>(std::max(count, 0));
+  return {gaps_before(polygons, regions, 0, std::min<std::size_t>(walls, 1), context),
+          gaps_before(polygons, regions, 1, walls, context)};
 }
 
 std::vector<Stroke> gap_lines(const Polygons& polygons, const std::vector<Polygons>& regions,
                               int count, double widest_mm, const PlanContext& context) {
-  const double narrowest_mm = context.line_width_mm / 3;  // less is left to what beads spread
-  return centre_lines(wall_gaps(polygons, regions, count, context),
-                      {.min_width_mm = narrowest_mm,
-                       .max_width_mm = widest_mm,
-                       .min_length_mm = context.line_width_mm / 2,
-                       .width = CentreLineWidth::kInscribed},
-                      context);
+  const WallGaps gaps = wall_gaps(polygons, regions, count, context);
+  CentreLineRule rule{.min_width_mm = narrowest_line_mm(context),
+                      .max_width_mm = widest_mm,
+                      .min_length_mm = context.line_width_mm / 2,
+                      .width = CentreLineWidth::kInscribed};
+  std::vector<Stroke> strokes = centre_lines(gaps.outside, rule, context);
+  // Beads of neighbouring lines overlap with their round sides, and so do these with the walls.
+  const double overlap_mm = context.line_width_mm - context.spacing_mm;
+  rule.min_width_mm -= overlap_mm;
+  rule.max_width_mm -= overlap_mm;
+  for (Stroke& stroke : centre_lines(gaps.between, rule, context)) {
+    stroke.width_mm += overlap_mm;
+    strokes.push_back(std::move(stroke));
+  }
+  return strokes;
+}
+
+double narrowest_line_mm(const PlanContext& context) {
+  return context.line_width_mm / 3;  // less is left to what beads spread
+}
+
+double left_inside_mm(const Polygon& region, const PlanContext& context) {
+  constexpr double kLeastMm = 0.01;
+  const double overlap_mm = context.line_width_mm - context.spacing_mm;
+  const double line_mm = narrowest_line_mm(context) - overlap_mm;
+  const double left_mm = strip_width_mm(region) - context.spacing_mm;
+  if (left_mm < kLeastMm || left_mm >= line_mm) return 0;
+  // No wider anywhere.
+  return offset({region}, -(context.spacing_mm + line_mm) / 2).empty() ? left_mm : 0;
+}
+
+Polygons without_strips(const Polygons& region, const Polygons& next, double reach_mm,
+                        double near_mm, const PlanContext& context) {
+  // A strip is several spacings long. So the next wall, if it goes everywhere, is proof enough.
+  const double slack_mm = context.spacing_mm;
+  if (grows_back(next, region, context.spacing_mm, slack_mm)) return region;
+  const Polygons cores = offset(region, -near_mm / 2);
+  const double least_mm2 = least_stroke_mm2(context) / 4;
+  if (area_mm2(region) - grown_area_mm2(cores, near_mm / 2) < least_mm2 ||
+      grows_back(cores, region, near_mm / 2, slack_mm))
+    return region;
+  const Polygons wide = intersect(offset(cores, near_mm / 2), region);
+  Polygons strips;
+  for (Polygon& part : subtract(region, wide)) {
+    const double area = area_mm2(part), width_mm = strip_width_mm(part);
+    if (area < least_mm2 * 1e-3) continue;
+    const double length_mm = area / width_mm;
+    const bool has_ends = part.holes.empty();
+    const double needed =
+        area + 2 * length_mm * reach_mm + (has_ends ? std::numbers::pi * reach_mm * reach_mm : 0);
+    const double twice = perimeter_mm(Polygons{part}) * context.spacing_mm;
+    const double once =
+        (width_mm + context.spacing_mm) * std::max(length_mm - (has_ends ? width_mm : 0), 0.0);
+    if (once >= kEnough * needed && std::abs(once - needed) < std::abs(twice - needed))
+      strips.push_back(std::move(part));
+  }
+  return subtract(region, strips);
 }
 
 std::vector<Ring> rings_of(const Polygons& polygons) {

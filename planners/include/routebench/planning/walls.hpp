@@ -18,20 +18,48 @@ namespace routebench {
 /// offset is needed to know. Cost   linear.
 [[nodiscard]] double grown_area_mm2(const Polygons& polygons, double distance_mm);
 
-/// What `count` walls leave open before and between them: parts narrower than a line, and strips
-/// between walls in which no further one fits. What lies inside the last of them is none of it.
+/// What walls leave open.
+struct WallGaps {
+  Polygons outside;  ///< parts that are too narrow for the first wall
+  Polygons between;  ///< strips inside the first wall in which no further one fits
+};
+
+/// What `count` walls leave open before and between them. What lies inside the last of them is none
+/// of it.
 ///
 /// Takes   polygons and their wall_regions, fewer than `count` if no more fit.
-/// Returns polygons, with slivers of a few micrometres among them.
-/// Cost    linear where nothing is narrow; else two offsets a wall and one Boolean operation.
-[[nodiscard]] Polygons wall_gaps(const Polygons& polygons, const std::vector<Polygons>& regions,
+/// Returns polygons, with slivers of a few micrometres among them. A line's own place is taken to
+/// be
+///         a spacing wide, but up to the outline all that its bead reaches.
+/// Cost    linear where nothing is narrow; else two offsets a wall and two Boolean operations.
+[[nodiscard]] WallGaps wall_gaps(const Polygons& polygons, const std::vector<Polygons>& regions,
                                  int count, const PlanContext& context);
 
-/// Lines along the middle of wall_gaps, each as wide as its gap: from a third of a line width to
-/// widest_mm.
+/// Lines along the middle of wall_gaps, each as wide as its gap, from narrowest_line_mm to
+/// widest_mm. Those between walls overlap with them as much as walls do with each other.
 [[nodiscard]] std::vector<Stroke> gap_lines(const Polygons& polygons,
                                             const std::vector<Polygons>& regions, int count,
                                             double widest_mm, const PlanContext& context);
+
+/// No narrower line is laid in a gap: a third of a line width.
+[[nodiscard]] double narrowest_line_mm(const PlanContext& context);
+
+/// Width of what a wall leaves open inside itself, if its region is a strip throughout and that is
+/// too narrow for the narrowest line; else 0. A wall half as much wider, a quarter of it further
+/// in, leaves nothing.
+[[nodiscard]] double left_inside_mm(const Polygon& region, const PlanContext& context);
+
+/// A wall's region without the strips that one line serves better than a wall there and back: parts
+/// narrower than near_mm, in which the amount of material of a line in the middle, as wide as the
+/// strip and the wall's reach on both sides, is nearer to what is needed than that of the wall. A
+/// wall there and back is too much in a long strip; in a short one a line lacks its ends.
+///
+/// Takes   what a wall's centre line encloses, what the next one would (if that is known), and how
+///         far the wall reaches beyond its centre line.
+/// Cost    linear where the next wall goes everywhere; else an offset, and where something is
+///         narrow another one and three Boolean operations.
+[[nodiscard]] Polygons without_strips(const Polygons& region, const Polygons& next, double reach_mm,
+                                      double near_mm, const PlanContext& context);
 
 /// All rings of polygons: each outer one followed by its holes.
 [[nodiscard]] std::vector<Ring> rings_of(const Polygons& polygons);
