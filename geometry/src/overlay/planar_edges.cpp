@@ -35,7 +35,7 @@ PlanarEdges::PlanarEdges(const GridRings& rings) : rings_(rings), cells_(rings) 
   link();
   for (std::uint32_t e = 0; e < size(); ++e)
     cells_.add(e, edge(e), [&](std::uint32_t f) {
-      if (come_near(e, f)) look(e, f);
+      if (come_near(e, f) && !are_neighbours(e, f)) look(e, f);
     });
   cut_until_planar();
 }
@@ -46,7 +46,7 @@ PlanarEdges::PlanarEdges(const GridRings& rings, const std::vector<std::uint8_t>
   for (std::uint32_t e = 0; e < size(); ++e) {
     const bool every = moved[e] != 0;
     cells_.add(e, edge(e), [&](std::uint32_t f) {
-      if ((every || moved[f] != 0) && come_near(e, f)) look(e, f);
+      if ((every || moved[f] != 0) && come_near(e, f) && !are_neighbours(e, f)) look(e, f);
     });
   }
   cut_until_planar();
@@ -63,6 +63,7 @@ void PlanarEdges::link() {
       next_[i] = i + 1 < end ? i + 1 : begin;
       set_box(i);
     }
+    for (std::uint32_t i = begin; i < end; ++i) look_at_fold(i, next_[i]);
   }
 }
 
@@ -77,7 +78,13 @@ void PlanarEdges::cut_until_planar() {
     // A piece that keeps its edge's number is in the cells twice, which does no harm.
     for (const std::uint32_t e : pieces)
       cells_.add(e, edge(e), [&](std::uint32_t f) {
-        if (e != f && come_near(e, f)) look(e, f);
+        if (e == f || !come_near(e, f)) return;
+        if (next_[e] == f)
+          look_at_fold(e, f);
+        else if (next_[f] == e)
+          look_at_fold(f, e);
+        else
+          look(e, f);
       });
   }
   are_planar_ = cuts_.empty();
@@ -117,9 +124,8 @@ std::vector<std::uint32_t> PlanarEdges::apply_cuts() {
 }
 
 void PlanarEdges::look(std::uint32_t e, std::uint32_t f) {
-  if (next_[e] == f) return look_at_fold(e, f);
-  if (next_[f] == e) return look_at_fold(f, e);
   const Edge a = edge(e), b = edge(f);
+  if (share_one_end(e, f)) return;
   const std::int64_t from_b = turn(a.from, a.to, b.from), to_b = turn(a.from, a.to, b.to);
   if ((from_b > 0 && to_b > 0) || (from_b < 0 && to_b < 0)) return;
   const std::int64_t from_a = turn(b.from, b.to, a.from), to_a = turn(b.from, b.to, a.to);
@@ -134,6 +140,22 @@ void PlanarEdges::look(std::uint32_t e, std::uint32_t f) {
   if (to_b == 0 && within(a, b.to)) touch_by(e, next_[f]);
   if (from_a == 0 && within(b, a.from)) touch_by(f, e);
   if (to_a == 0 && within(b, a.to)) touch_by(f, next_[e]);
+}
+
+/// Where edges have an end in common, as pieces mostly do, one more turn tells whether that is all.
+bool PlanarEdges::share_one_end(std::uint32_t e, std::uint32_t f) {
+  const std::uint32_t e_end = next_[e], f_end = next_[f];
+  const auto meet_at = [&](std::uint32_t p, std::uint32_t q, std::uint32_t p_far,
+                           std::uint32_t q_far) {
+    meet(p);
+    meet(q);
+    return turn(points_[p], points_[p_far], points_[q_far]) != 0;
+  };
+  if (points_[e] == points_[f]) return meet_at(e, f, e_end, f_end);
+  if (points_[e] == points_[f_end]) return meet_at(e, f_end, e_end, f);
+  if (points_[e_end] == points_[f]) return meet_at(e_end, f, e, f_end);
+  if (points_[e_end] == points_[f_end]) return meet_at(e_end, f_end, e, f);
+  return false;
 }
 
 /// Neighbours of one ring meet beyond their common point only where the ring turns back.

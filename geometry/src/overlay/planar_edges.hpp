@@ -58,11 +58,16 @@ class PlanarEdges {
   void set_box(std::uint32_t edge);
   void cut_until_planar();
   std::vector<std::uint32_t> apply_cuts();
+  /// Cuts two edges, not neighbours of one ring, where they meet.
   void look(std::uint32_t e, std::uint32_t f);
+  bool share_one_end(std::uint32_t e, std::uint32_t f);
   void look_at_fold(std::uint32_t e, std::uint32_t f);
   void touch_by(std::uint32_t edge, std::uint32_t point);
   void touch(std::uint32_t edge, GridPoint p);
   void meet(std::uint32_t point);
+  [[nodiscard]] bool are_neighbours(std::uint32_t e, std::uint32_t f) const {
+    return next_[e] == f || next_[f] == e;
+  }
   [[nodiscard]] bool come_near(std::uint32_t e, std::uint32_t f) const {
     const Box &a = boxes_[e], &b = boxes_[f];
     return (static_cast<int>(a.left <= b.right) & static_cast<int>(b.left <= a.right) &
