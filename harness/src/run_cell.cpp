@@ -168,6 +168,15 @@ std::string place_of(const ChildEnd& end) {
          " layer " + std::to_string(end.layer);
 }
 
+/// What an exception said, and where, unless it has said that itself: a slicer's says what failed,
+/// a contender's names planner and layer.
+std::string told_with_place(const ChildEnd& end) {
+  const std::string text = one_line(end.text);
+  const bool placed = end.phase == ChildProgress::kSlicing ||
+                      text.find(", layer " + std::to_string(end.layer) + ": ") != text.npos;
+  return placed ? text : text + place_of(end);
+}
+
 CellResult without_result(Outcome outcome, const std::string& reason) {
   CellResult result;
   result.outcome = outcome;
@@ -311,12 +320,9 @@ CellResult cell_result_of(const ChildEnd& end, const ChildLimits& limits) {
         return without_result(Outcome::kCrashed, "what its process told cannot be read");
       }
     case ChildEnd::How::kException:
-      // A slicer's failure says itself what failed.
-      return without_result(
-          Outcome::kFailed,
-          one_line(end.text) + (end.phase == ChildProgress::kSlicing ? "" : place_of(end)));
+      return without_result(Outcome::kFailed, told_with_place(end));
     case ChildEnd::How::kPlannerDied:
-      return without_result(Outcome::kCrashed, one_line(end.text) + place_of(end));
+      return without_result(Outcome::kCrashed, told_with_place(end));
     case ChildEnd::How::kExited:
       return without_result(Outcome::kCrashed, "ended its process with exit code " +
                                                    std::to_string(end.code) + place_of(end) +

@@ -131,6 +131,7 @@ TEST_P(Crimes, CostTheirOwnCellAndNothingElse) {
   EXPECT_EQ(to_string(culprit.outcome), to_string(crime.outcome)) << culprit.reason;
   EXPECT_NE(culprit.reason.find(crime.reason), std::string::npos) << culprit.reason;
   EXPECT_EQ(culprit.reason.find('\n'), std::string::npos);
+  EXPECT_EQ(culprit.reason.find("layer 1"), culprit.reason.rfind("layer 1")) << culprit.reason;
   if (crime.outcome == Outcome::kValid) {
     EXPECT_EQ(culprit.reason, "");
   }
