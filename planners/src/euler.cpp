@@ -160,7 +160,12 @@ class Walker {
     if (!places.empty()) opposites_.emplace_back(graph, places);
   }
 
-  /// The circuit of the component of `start`; no edges if all are used.
+  /// Whether an edge at the node is not yet used.
+  [[nodiscard]] bool has_free_arc(std::uint32_t node) {
+    return choose({node, kNone, kNone}) != kNone;
+  }
+
+  /// The circuit of the component of `start`.
   Circuit walk_from(std::uint32_t start) {
     Circuit circuit;
     stack_.assign(1, {start, kNone, kNone});
@@ -270,8 +275,7 @@ std::vector<Circuit> euler_circuits(const Multigraph& graph, std::span<const Poi
   Walker walker(graph, places);
   std::vector<Circuit> circuits;
   for (std::uint32_t node = 0; node < graph.node_count(); ++node) {
-    Circuit circuit = walker.walk_from(node);
-    if (!circuit.edges.empty()) circuits.push_back(std::move(circuit));
+    if (walker.has_free_arc(node)) circuits.push_back(walker.walk_from(node));
   }
   return circuits;
 }

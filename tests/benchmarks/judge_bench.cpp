@@ -3,6 +3,9 @@
 #include <benchmark/benchmark.h>
 
 #include "bench_models.hpp"
+#include "judge/coverage.hpp"
+#include "judge/layer_samples.hpp"
+#include "judge/run.hpp"
 #include "routebench/harness/contender.hpp"
 #include "routebench/harness/demand.hpp"
 #include "routebench/harness/judge.hpp"
@@ -54,5 +57,17 @@ void judge_layer(benchmark::State& state) {
     benchmark::DoNotOptimize(judge.score(layer.layer, layer.demand, planned.route, {}));
 }
 BENCHMARK(judge_layer)->ArgName("percent")->Arg(20)->Arg(100)->Unit(benchmark::kMillisecond);
+
+/// Of judging, what beads cover, at samples 0.05 mm apart.
+void cover_layer(benchmark::State& state) {
+  const Case layer(density_of(state));
+  const std::vector<judging::Run> runs = judging::runs_of(layer.plan().route, layer.task.join_mm);
+  for (auto _ : state) {
+    const judging::LayerSamples samples(layer.demand, layer.task);
+    benchmark::DoNotOptimize(judging::measure_coverage(samples, samples.outline.count(),
+                                                       layer.demand, runs, layer.task));
+  }
+}
+BENCHMARK(cover_layer)->ArgName("percent")->Arg(20)->Arg(100)->Unit(benchmark::kMillisecond);
 
 }  // namespace

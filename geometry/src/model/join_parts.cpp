@@ -119,6 +119,7 @@ Mesh join_parts(std::vector<Mesh> parts, const ParallelFor& parallel_for) {
   });
   auto [place, places] = number_places(binned, first_vertex.back(), parallel_for);
   binned = {};
+  for (Mesh& part : parts) part.vertices = {};  // what comes next takes as much
 
   Mesh mesh;
   mesh.vertices = std::move(places);

@@ -10,6 +10,7 @@
 
 #include "arguments.hpp"
 #include "json_documents.hpp"
+#include "kept_memory.hpp"
 #include "layer_selection.hpp"
 #include "planner_process.hpp"
 #include "routebench/geometry/error.hpp"
@@ -90,6 +91,7 @@ class Plan {
         planners_(load_planners(arguments.plugins)),
         parallel_for_(parallel_loop(arguments.jobs)),
         offset_(offset_of(arguments.offset)) {
+    keep_freed_memory();
     require_all_loaded(planners_);
     print_refused(planners_);
     add_commands(planners_, std::vector{arguments.shell, arguments.fill});

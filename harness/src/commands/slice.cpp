@@ -8,6 +8,7 @@
 
 #include "arguments.hpp"
 #include "json_documents.hpp"
+#include "kept_memory.hpp"
 #include "routebench/geometry/error.hpp"
 #include "routebench/geometry/layer_io.hpp"
 #include "routebench/geometry/region.hpp"
@@ -93,6 +94,7 @@ void print_container(const std::string& model, const VoxelContainer& container) 
 }
 
 void slice(const SliceArguments& arguments) {
+  keep_freed_memory();
   const Task task = task_of(arguments.task);
   const SliceMethod method = slice_method(arguments.method);
   if (arguments.cell_mm && method != SliceMethod::kVoxel)
