@@ -20,6 +20,9 @@ constexpr double kSharpest = 0.29;
 constexpr double kCornerDistances = 2;
 constexpr std::size_t kLookAhead = 3;  // edges: a few small ones may lead away at first
 constexpr int kSearches = 8;           // over the whole inset, for one ring of the area
+// With more places in doubt, and that share of all, the whole area is.
+constexpr std::size_t kManyDoubts = 32;
+constexpr std::size_t kLargeShare = 8;
 
 /// The least box around two.
 Box2 around(const Box2& a, const Box2& b) {
@@ -61,26 +64,33 @@ class Follower {
     return nearest;
   }
 
-  /// Goes to the nearest place of all rings, if it is within a distance.
+  /// Goes to a place within a distance, if there is one: the nearest of a ring, of all that have
+  /// one the first after the ring where it is.
   bool search(Point2 p, double within_squared) {
-    double nearest = within_squared;
-    bool found = false;
-    for (std::size_t r = 0; r < rings_.size(); ++r) {
+    for (std::size_t n = 0; n < rings_.size(); ++n) {
+      const std::size_t r = (index_ + n) % rings_.size();
       const Point2 in_box{std::clamp(p.x, boxes_[r].lower.x, boxes_[r].upper.x),
                           std::clamp(p.y, boxes_[r].lower.y, boxes_[r].upper.y)};
-      if (squared_distance(p, in_box) > nearest) continue;
+      if (squared_distance(p, in_box) > within_squared) continue;
       const Ring& ring = *rings_[r];
+      double nearest = within_squared;
+      std::size_t edge = 0;
+      bool found = false;
       for (std::size_t i = 0; i < ring.size(); ++i) {
         const Point2 foot = nearest_on_segment(p, ring[i], ring[i + 1 < ring.size() ? i + 1 : 0]);
         const double squared = squared_distance(p, foot);
         if (squared > nearest) continue;
         nearest = squared;
-        ring_ = &ring;
-        edge_ = i;
+        edge = i;
         found = true;
       }
+      if (!found) continue;
+      edge_ = edge;
+      ring_ = &ring;
+      index_ = r;
+      return true;
     }
-    return found;
+    return false;
   }
 
  private:
@@ -92,6 +102,7 @@ class Follower {
   std::vector<const Ring*> rings_;
   std::vector<Box2> boxes_;
   const Ring* ring_ = nullptr;
+  std::size_t index_ = 0;  // of the ring
   std::size_t edge_ = 0;
   std::size_t steps_ = 0;
 };
@@ -102,20 +113,21 @@ class RingProof {
   RingProof(const Ring& ring, double distance_mm, double slack_mm, Follower& inset)
       : ring_(ring), distance_mm_(distance_mm), slack_mm_(slack_mm), inset_(inset) {}
 
-  /// Calls doubt(p) for each place that has no inset beside it.
-  template <typename Doubt>
-  void look(Doubt&& doubt) {
+  /// Calls visit(p, has_inset) for places of the ring one after the other, until that is false.
+  template <typename Visit>
+  bool look(Visit&& visit) {
     for (std::size_t i = 0; i < ring_.size(); ++i) {
       const Point2 corner = ring_[i], next = ring_[after(i)];
-      if (!has_inset_beside(corner, i)) doubt(corner);
+      if (!visit(corner, has_inset_beside(corner, i))) return false;
       // Between corners too, as near to them as a stub is long that has room for a line.
       const int pieces =
           static_cast<int>(distance(corner, next) / ((distance_mm_ + slack_mm_) / 2)) + 1;
       for (int k = 1; k < pieces; ++k) {
         const Point2 p = lerp(corner, next, static_cast<double>(k) / pieces);
-        if (!has_inset_beside(p, i)) doubt(p);
+        if (!visit(p, has_inset_beside(p, i))) return false;
       }
     }
+    return true;
   }
 
  private:
@@ -201,19 +213,24 @@ std::vector<Box2> doubtful_places(const Polygons& inset, const Polygons& area, d
                                   double slack_mm, double margin_mm) {
   std::vector<Box2> boxes;
   const Point2 margin{margin_mm, margin_mm};
-  const auto doubt = [&](Point2 p) { add({snap(p - margin), snap(p + margin)}, boxes); };
-  if (inset.empty()) {
-    if (!area.empty()) {
-      const Box2 box = bounding_box(area);
-      boxes.push_back({snap(box.lower - margin), snap(box.upper + margin)});
-    }
-    return boxes;
-  }
+  const auto all = [&]() -> std::vector<Box2> {
+    if (area.empty()) return {};
+    const Box2 box = bounding_box(area);
+    return {{snap(box.lower - margin), snap(box.upper + margin)}};
+  };
+  if (inset.empty()) return all();
+  std::size_t places = 0, doubts = 0;
+  const auto visit = [&](Point2 p, bool has_inset) {
+    ++places;
+    if (has_inset) return true;
+    add({snap(p - margin), snap(p + margin)}, boxes);
+    return ++doubts < kManyDoubts || doubts * kLargeShare < places;
+  };
   Follower follower(inset);
   for (const Polygon& polygon : area) {
-    RingProof(polygon.outer, distance_mm, slack_mm, follower).look(doubt);
+    if (!RingProof(polygon.outer, distance_mm, slack_mm, follower).look(visit)) return all();
     for (const Ring& hole : polygon.holes)
-      RingProof(hole, distance_mm, slack_mm, follower).look(doubt);
+      if (!RingProof(hole, distance_mm, slack_mm, follower).look(visit)) return all();
   }
   return boxes;
 }
