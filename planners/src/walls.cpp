@@ -123,7 +123,7 @@ std::vector<Stroke> gap_lines(const Polygons& polygons, const std::vector<Polygo
   std::vector<Stroke> strokes = centre_lines(gaps.outside, rule, context);
   // Beads of neighbouring lines overlap with their round sides, and so do these with the walls.
   const double overlap_mm = context.line_width_mm - context.spacing_mm;
-  rule.min_width_mm -= overlap_mm;
+  rule.min_width_mm = std::max(rule.min_width_mm - overlap_mm, rule.min_width_mm / 4);
   rule.max_width_mm -= overlap_mm;
   for (Stroke& stroke : centre_lines(gaps.between, rule, context)) {
     stroke.width_mm += overlap_mm;
