@@ -340,33 +340,43 @@ class GreedyShell final : public Planner {
   [[nodiscard]] Island walls_of(const Polygon& polygon, const PlanContext& context) const {
     std::vector<Polygons> regions = wall_regions(polygon, context);
     Island island;
-    const double near_mm = kNearSides * context.spacing_mm;
     for (std::size_t wall = 0; wall < regions.size(); ++wall) {
-      Polygons& region = regions[wall];
       const bool innermost = wall + 1 == regions.size();
       const bool twice =
-          params_.small_twice && innermost && offset(region, -context.spacing_mm).empty();
+          params_.small_twice && innermost && offset(regions[wall], -context.spacing_mm).empty();
+      regions[wall] = where_walled(regions, wall, context);
       Pool pool;
-      if (params_.thin == Thin::kDrop)
-        region = without_thin_parts(region, near_mm);
-      else if (params_.thin == Thin::kAuto && params_.gaps == Gaps::kFill)
-        region = without_strips(region, innermost ? Polygons{} : regions[wall + 1],
-                                (wall == 0 ? context.line_width_mm : context.spacing_mm) / 2,
-                                near_mm, context);
-      const bool next_is_wall = std::cmp_less(wall + 1, context.perimeters);
-      for (const Polygon& part : region) {
-        const double left_mm =
-            params_.gaps == Gaps::kFill && next_is_wall ? left_inside_mm(part, context) : 0;
-        for (const Ring& ring :
-             rings_of(left_mm > 0 ? offset({part}, -left_mm / 4) : Polygons{part}))
-          pool.add(ring, context.line_width_mm + left_mm / 2, twice);
-      }
+      const bool another = std::cmp_less(wall + 1, context.perimeters);
+      for (const Polygon& part : regions[wall]) add_wall(part, another, twice, context, pool);
       if (pool.size() > 0) island.pools.push_back(std::move(pool));
     }
     if (params_.order == Order::kInsideOut) std::reverse(island.pools.begin(), island.pools.end());
     if (params_.gaps == Gaps::kFill)
       island.gaps = gap_lines({polygon}, regions, context.perimeters, widest_mm(context), context);
     return island;
+  }
+
+  /// A wall's region without what is too narrow for the wall.
+  [[nodiscard]] Polygons where_walled(const std::vector<Polygons>& regions, std::size_t wall,
+                                      const PlanContext& context) const {
+    const double near_mm = kNearSides * context.spacing_mm;
+    if (params_.thin == Thin::kDrop) return without_thin_parts(regions[wall], near_mm);
+    // Where gaps are left, a line would not take the wall's place.
+    if (params_.thin == Thin::kDouble || params_.gaps == Gaps::kLeave) return regions[wall];
+    const double place_mm = wall == 0 ? context.line_width_mm : context.spacing_mm;
+    return without_strips(regions[wall], wall + 1 < regions.size() ? regions[wall + 1] : Polygons{},
+                          place_mm / 2, near_mm, context);
+  }
+
+  /// Adds the wall round one part of its region. Where another one is asked for inside it and there
+  /// is not even room for a line, it is made wider.
+  void add_wall(const Polygon& part, bool another, bool twice, const PlanContext& context,
+                Pool& pool) const {
+    const double left_mm =
+        another && params_.gaps == Gaps::kFill ? left_inside_mm(part, context) : 0;
+    const Polygons centre = left_mm > 0 ? offset({part}, -left_mm / 4) : Polygons{part};
+    for (const Ring& ring : rings_of(centre))
+      pool.add(ring, context.line_width_mm + left_mm / 2, twice);
   }
 
   /// The widest place that no wall is laid in.

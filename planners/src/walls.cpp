@@ -6,7 +6,8 @@
 #include <numbers>
 #include <utility>
 
-#include "inset_proof.hpp"
+#include "narrow_places.hpp"
+#include "routebench/geometry/grid.hpp"
 #include "routebench/geometry/region.hpp"
 #include "routebench/geometry/vec.hpp"
 #include "routebench/planning/centre_lines.hpp"
@@ -20,6 +21,8 @@ constexpr double kEnough = 0.85;
 /// How much farther a wall may be from the one before than it should, where no line fits between
 /// them: at the bottom of a stub about a sixth of a millimetre deep.
 constexpr double kStubMm = 0.03;
+/// What is narrow is looked at so many spacings round about.
+constexpr double kMarginSpacings = 3;
 
 }  // namespace
 
@@ -72,41 +75,42 @@ double strip_width_mm(const Polygon& strip) {
   return 2 * area / (half_mm + std::sqrt(std::max(half_mm * half_mm - 4 * area, 0.0)));
 }
 
-/// What walls first..count leave open, as described for WallGaps.
+Box2 grown(const Box2& box, double mm) {
+  const Point2 by = snap(Point2{mm, mm});
+  return {box.lower - by, box.upper + by};
+}
+
+/// What a wall leaves open before it, of what the ones before it left.
 Polygons gaps_before(const Polygons& polygons, const std::vector<Polygons>& regions,
-                     std::size_t first, std::size_t count, const PlanContext& context) {
-  // Each area holds the next one: what is open before a wall, and what that wall's beads reach. So
-  // what lies in an odd number of them is a gap.
-  std::vector<Ring> rings;
-  const auto add = [&rings](const Polygons& area) {
-    for (Ring& ring : rings_of(area)) rings.push_back(std::move(ring));
-    return area_mm2(area);
-  };
-  double gap_mm2 = 0;
-  for (std::size_t wall = first; wall < std::min(count, regions.size() + 1); ++wall) {
-    stop_if_asked(context);
-    const Polygons& before = wall == 0 ? polygons : regions[wall - 1];
-    const Polygons none;
-    const Polygons& region = wall < regions.size() ? regions[wall] : none;
-    // Where nothing is narrow, the wall's place grows back to where it came from.
-    const double step_mm = wall == 0 ? context.line_width_mm / 2 : context.spacing_mm;
-    if (area_mm2(before) - grown_area_mm2(region, step_mm) < least_stroke_mm2(context) ||
-        grows_back(region, before, step_mm, kStubMm))
-      continue;
-    gap_mm2 += add(wall == 0 ? before : offset(before, -context.spacing_mm / 2));
-    gap_mm2 -= add(offset(region, wall == 0 ? step_mm : context.spacing_mm / 2));
+                     std::size_t wall, const PlanContext& context) {
+  stop_if_asked(context);
+  const Polygons& before = wall == 0 ? polygons : regions[wall - 1];
+  const Polygons none;
+  const Polygons& region = wall < regions.size() ? regions[wall] : none;
+  // Where nothing is narrow, the wall's place grows back to where it came from.
+  const double step_mm = wall == 0 ? context.line_width_mm / 2 : context.spacing_mm;
+  if (area_mm2(before) - grown_area_mm2(region, step_mm) < least_stroke_mm2(context)) return {};
+  const double reach_mm = context.spacing_mm / 2, margin_mm = kMarginSpacings * context.spacing_mm;
+  Polygons gaps;
+  for (const Box2& box : doubtful_places(region, before, step_mm, kStubMm, margin_mm)) {
+    const Polygons open = clipped(before, box);
+    const Polygons laid = clipped(region, grown(box, margin_mm));  // all that reaches into it
+    for (Polygon& gap : subtract(wall == 0 ? open : offset(open, -reach_mm),
+                                 offset(laid, wall == 0 ? step_mm : reach_mm)))
+      gaps.push_back(std::move(gap));
   }
-  if (gap_mm2 < least_stroke_mm2(context)) return {};
-  return polygons_from_rings(std::move(rings), FillRule::kEvenOdd);
+  return gaps;
 }
 
 }  // namespace
 
 WallGaps wall_gaps(const Polygons& polygons, const std::vector<Polygons>& regions, int count,
                    const PlanContext& context) {
-  const auto walls = static_cast<std::size_t>(std::max(count, 0));
-  return {gaps_before(polygons, regions, 0, std::min<std::size_t>(walls, 1), context),
-          gaps_before(polygons, regions, 1, walls, context)};
+  WallGaps gaps;
+  for (std::size_t wall = 0; wall <= regions.size() && std::cmp_less(wall, count); ++wall)
+    for (Polygon& gap : gaps_before(polygons, regions, wall, context))
+      (wall == 0 ? gaps.outside : gaps.between).push_back(std::move(gap));
+  return gaps;
 }
 
 std::vector<Stroke> gap_lines(const Polygons& polygons, const std::vector<Polygons>& regions,
@@ -119,7 +123,7 @@ std::vector<Stroke> gap_lines(const Polygons& polygons, const std::vector<Polygo
   std::vector<Stroke> strokes = centre_lines(gaps.outside, rule, context);
   // Beads of neighbouring lines overlap with their round sides, and so do these with the walls.
   const double overlap_mm = context.line_width_mm - context.spacing_mm;
-  rule.min_width_mm -= overlap_mm;
+  rule.min_width_mm = std::max(rule.min_width_mm - overlap_mm, rule.min_width_mm / 4);
   rule.max_width_mm -= overlap_mm;
   for (Stroke& stroke : centre_lines(gaps.between, rule, context)) {
     stroke.width_mm += overlap_mm;
@@ -131,6 +135,24 @@ std::vector<Stroke> gap_lines(const Polygons& polygons, const std::vector<Polygo
 double narrowest_line_mm(const PlanContext& context) {
   return context.line_width_mm / 3;  // less is left to what beads spread
 }
+
+namespace {
+
+/// Whether one line serves a narrow part of a wall's region better than a wall there and back.
+bool is_strip(const Polygon& part, double reach_mm, const PlanContext& context) {
+  const double area = area_mm2(part), width_mm = strip_width_mm(part);
+  if (area < least_stroke_mm2(context) * 1e-3) return false;  // what rounding leaves
+  const double length_mm = area / width_mm;
+  const bool has_ends = part.holes.empty();
+  const double needed =
+      area + 2 * length_mm * reach_mm + (has_ends ? std::numbers::pi * reach_mm * reach_mm : 0);
+  const double twice = perimeter_mm(Polygons{part}) * context.spacing_mm;
+  const double once =
+      (width_mm + context.spacing_mm) * std::max(length_mm - (has_ends ? width_mm : 0), 0.0);
+  return once >= kEnough * needed && std::abs(once - needed) < std::abs(twice - needed);
+}
+
+}  // namespace
 
 double left_inside_mm(const Polygon& region, const PlanContext& context) {
   constexpr double kLeastMm = 0.01;
@@ -145,27 +167,14 @@ double left_inside_mm(const Polygon& region, const PlanContext& context) {
 Polygons without_strips(const Polygons& region, const Polygons& next, double reach_mm,
                         double near_mm, const PlanContext& context) {
   // A strip is several spacings long. So the next wall, if it goes everywhere, is proof enough.
-  const double slack_mm = context.spacing_mm;
-  if (grows_back(next, region, context.spacing_mm, slack_mm)) return region;
+  const double slack_mm = context.spacing_mm, margin_mm = kMarginSpacings * context.spacing_mm;
+  if (doubtful_places(next, region, context.spacing_mm, slack_mm, margin_mm).empty()) return region;
   const Polygons cores = offset(region, -near_mm / 2);
-  const double least_mm2 = least_stroke_mm2(context) / 4;
-  if (area_mm2(region) - grown_area_mm2(cores, near_mm / 2) < least_mm2 ||
-      grows_back(cores, region, near_mm / 2, slack_mm))
-    return region;
-  const Polygons wide = intersect(offset(cores, near_mm / 2), region);
   Polygons strips;
-  for (Polygon& part : subtract(region, wide)) {
-    const double area = area_mm2(part), width_mm = strip_width_mm(part);
-    if (area < least_mm2 * 1e-3) continue;
-    const double length_mm = area / width_mm;
-    const bool has_ends = part.holes.empty();
-    const double needed =
-        area + 2 * length_mm * reach_mm + (has_ends ? std::numbers::pi * reach_mm * reach_mm : 0);
-    const double twice = perimeter_mm(Polygons{part}) * context.spacing_mm;
-    const double once =
-        (width_mm + context.spacing_mm) * std::max(length_mm - (has_ends ? width_mm : 0), 0.0);
-    if (once >= kEnough * needed && std::abs(once - needed) < std::abs(twice - needed))
-      strips.push_back(std::move(part));
+  for (const Box2& box : doubtful_places(cores, region, near_mm / 2, slack_mm, margin_mm)) {
+    const Polygons wide = offset(clipped(cores, grown(box, margin_mm)), near_mm / 2);
+    for (Polygon& part : subtract(clipped(region, box), wide))
+      if (is_strip(part, reach_mm, context)) strips.push_back(std::move(part));
   }
   return subtract(region, strips);
 }

@@ -272,5 +272,34 @@ TEST(WallGaps, AreWhatNoWallReaches) {
   EXPECT_TRUE(none.outside.empty() && none.between.empty());
 }
 
+TEST(WallGaps, LeaveNoRoomForALineBesideThem) {
+  // They are sought only where a wall does not follow the one before it; this looks everywhere.
+  int found = 0;
+  for (const Layer& layer : trial_layers())
+    for (const Polygon& polygon : layer.polygons) {
+      const PlanContext context = context_for(3);
+      const std::vector<Polygons> regions = wall_regions(polygon, context);
+      const WallGaps gaps = wall_gaps({polygon}, regions, 3, context);
+      const auto missing = [&](const Polygons& open, const Polygons& laid, const Polygons& gap) {
+        found += gap.empty() ? 0 : 1;
+        const Polygons all = without_thin_parts(subtract(open, laid), narrowest_line_mm(context));
+        for (const Polygon& part : subtract(all, offset(gap, 0.02))) {
+          // What is left is no longer than the ends of a line.
+          const Box2 box = bounding_box({part});
+          EXPECT_LE(distance(box.lower, box.upper), kWidth / 2);
+        }
+      };
+      for (std::size_t wall = 0; wall <= regions.size() && wall < 3; ++wall) {
+        const Polygons region = wall < regions.size() ? regions[wall] : Polygons{};
+        if (wall == 0)
+          missing({polygon}, offset(region, kWidth / 2), gaps.outside);
+        else
+          missing(offset(regions[wall - 1], -kSpacing / 2), offset(region, kSpacing / 2),
+                  gaps.between);
+      }
+    }
+  EXPECT_GT(found, 20);
+}
+
 }  // namespace
 }  // namespace routebench

@@ -1,0 +1,255 @@
+#include "narrow_places.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "routebench/geometry/grid.hpp"
+#include "routebench/geometry/region.hpp"
+#include "routebench/geometry/vec.hpp"
+
+namespace routebench {
+namespace {
+
+// Of 1 + the cosine of a corner's turn: 135 degrees. Beyond it there may be room for something.
+constexpr double kSharpest = 0.29;
+// The inset of a corner begins at half the tangent of its turn from it, which is about this much.
+constexpr double kCornerDistances = 2;
+constexpr std::size_t kLookAhead = 3;  // edges: a few small ones may lead away at first
+constexpr int kSearches = 8;           // over the whole inset, for one ring of the area
+// With more places in doubt, and that share of all, the whole area is.
+constexpr std::size_t kManyDoubts = 32;
+constexpr std::size_t kLargeShare = 8;
+
+/// The least box around two.
+Box2 around(const Box2& a, const Box2& b) {
+  return {{std::min(a.lower.x, b.lower.x), std::min(a.lower.y, b.lower.y)},
+          {std::max(a.upper.x, b.upper.x), std::max(a.upper.y, b.upper.y)}};
+}
+
+/// A place that follows a point along rings.
+class Follower {
+ public:
+  explicit Follower(const Polygons& polygons) {
+    const auto add = [this](const Ring& ring) {
+      rings_.push_back(&ring);
+      Box2 box{ring.front(), ring.front()};
+      for (const Point2 p : ring) box = around(box, {p, p});
+      boxes_.push_back(box);
+    };
+    for (const Polygon& polygon : polygons) {
+      add(polygon.outer);
+      for (const Ring& hole : polygon.holes) add(hole);
+    }
+  }
+
+  [[nodiscard]] bool is_somewhere() const { return ring_ != nullptr; }
+
+  /// Moves on along the ring as long as that leads nearer to p; the squared distance there.
+  double follow(Point2 p) {
+    double nearest = squared_to(p, edge_);
+    for (std::size_t ahead = 1; ahead <= kLookAhead; ++ahead) {
+      const std::size_t next = (edge_ + ahead) % ring_->size();
+      const double squared = squared_to(p, next);
+      if (squared > nearest) continue;
+      nearest = squared;
+      edge_ = next;
+      ahead = 0;
+      if (++steps_ > ring_->size()) break;  // once round
+    }
+    steps_ = 0;
+    return nearest;
+  }
+
+  /// Goes to a place within a distance, if there is one: the nearest of a ring, of all that have
+  /// one the first after the ring where it is.
+  bool search(Point2 p, double within_squared) {
+    for (std::size_t n = 0; n < rings_.size(); ++n) {
+      const std::size_t r = (index_ + n) % rings_.size();
+      const Point2 in_box{std::clamp(p.x, boxes_[r].lower.x, boxes_[r].upper.x),
+                          std::clamp(p.y, boxes_[r].lower.y, boxes_[r].upper.y)};
+      if (squared_distance(p, in_box) > within_squared) continue;
+      const Ring& ring = *rings_[r];
+      double nearest = within_squared;
+      std::size_t edge = 0;
+      bool found = false;
+      for (std::size_t i = 0; i < ring.size(); ++i) {
+        const Point2 foot = nearest_on_segment(p, ring[i], ring[i + 1 < ring.size() ? i + 1 : 0]);
+        const double squared = squared_distance(p, foot);
+        if (squared > nearest) continue;
+        nearest = squared;
+        edge = i;
+        found = true;
+      }
+      if (!found) continue;
+      edge_ = edge;
+      ring_ = &ring;
+      index_ = r;
+      return true;
+    }
+    return false;
+  }
+
+ private:
+  [[nodiscard]] double squared_to(Point2 p, std::size_t edge) const {
+    const std::size_t end = edge + 1 < ring_->size() ? edge + 1 : 0;
+    return squared_distance(p, nearest_on_segment(p, (*ring_)[edge], (*ring_)[end]));
+  }
+
+  std::vector<const Ring*> rings_;
+  std::vector<Box2> boxes_;
+  const Ring* ring_ = nullptr;
+  std::size_t index_ = 0;  // of the ring
+  std::size_t edge_ = 0;
+  std::size_t steps_ = 0;
+};
+
+/// One ring of the area, and how far from its places their inset may be.
+class RingProof {
+ public:
+  RingProof(const Ring& ring, double distance_mm, double slack_mm, Follower& inset)
+      : ring_(ring), distance_mm_(distance_mm), slack_mm_(slack_mm), inset_(inset) {}
+
+  /// Calls visit(p, has_inset) for places of the ring one after the other, until that is false.
+  template <typename Visit>
+  bool look(Visit&& visit) {
+    for (std::size_t i = 0; i < ring_.size(); ++i) {
+      const Point2 corner = ring_[i], next = ring_[after(i)];
+      if (!visit(corner, has_inset_beside(corner, i))) return false;
+      // Between corners too, as near to them as a stub is long that has room for a line.
+      const int pieces =
+          static_cast<int>(distance(corner, next) / ((distance_mm_ + slack_mm_) / 2)) + 1;
+      for (int k = 1; k < pieces; ++k) {
+        const Point2 p = lerp(corner, next, static_cast<double>(k) / pieces);
+        if (!visit(p, has_inset_beside(p, i))) return false;
+      }
+    }
+    return true;
+  }
+
+ private:
+  [[nodiscard]] std::size_t after(std::size_t i) const { return i + 1 < ring_.size() ? i + 1 : 0; }
+  [[nodiscard]] std::size_t before(std::size_t i) const { return i > 0 ? i - 1 : ring_.size() - 1; }
+
+  /// Asks for a place on edge i, from its first point on.
+  bool has_inset_beside(Point2 p, std::size_t i) {
+    const auto squared = [this](double mm) { return (mm + slack_mm_) * (mm + slack_mm_); };
+    double nearest = std::numeric_limits<double>::infinity();
+    if (searches_ > 0 && inset_.is_somewhere()) nearest = inset_.follow(p);
+    if (nearest <= squared(distance_mm_)) return true;
+    const double reach = squared(distance_mm_ * corner_reach(p, i));
+    if (nearest <= reach) return true;
+    return ++searches_ <= kSearches && inset_.search(p, reach);
+  }
+
+  /// How many times the distance the inset may be away from a place on edge i: 1, but more at a
+  /// corner, which may be rounded or cut off by other ones within the distance.
+  [[nodiscard]] double corner_reach(Point2 p, std::size_t i) const {
+    const double near_mm = kCornerDistances * distance_mm_;
+    std::size_t first = p == ring_[i] ? before(i) : i, last = i;
+    for (std::size_t k = 0; k < ring_.size() && distance(ring_[first], p) < near_mm; ++k)
+      first = before(first);
+    for (std::size_t k = 0; k < ring_.size() && distance(ring_[after(last)], p) < near_mm; ++k)
+      last = after(last);
+    const Point2 in = ring_[after(first)] - ring_[first], out = ring_[after(last)] - ring_[last];
+    if (cross(in, out) <= 0) return 1;  // towards the inside, or straight
+    // 1 / cos(t / 2) of the turn t, as cos(t) = 2 cos(t / 2)^2 - 1
+    const double share = 1 + dot(in, out) / std::sqrt(dot(in, in) * dot(out, out));
+    return share > kSharpest ? std::sqrt(2 / share) : 1;
+  }
+
+  const Ring& ring_;
+  double distance_mm_;
+  double slack_mm_;
+  Follower& inset_;
+  int searches_ = 0;
+};
+
+bool meet(const Box2& a, const Box2& b) {
+  return a.lower.x <= b.upper.x && b.lower.x <= a.upper.x && a.lower.y <= b.upper.y &&
+         b.lower.y <= a.upper.y;
+}
+
+bool holds(const Box2& outer, const Box2& inner) {
+  return outer.lower.x <= inner.lower.x && outer.lower.y <= inner.lower.y &&
+         outer.upper.x >= inner.upper.x && outer.upper.y >= inner.upper.y;
+}
+
+/// Adds a box to disjoint ones, as one with all that it meets.
+void add(Box2 box, std::vector<Box2>& boxes) {
+  for (std::size_t i = 0; i < boxes.size();) {
+    if (!meet(boxes[i], box)) {
+      ++i;
+      continue;
+    }
+    box = around(box, boxes[i]);
+    boxes[i] = boxes.back();
+    boxes.pop_back();
+    i = 0;  // it may meet more now
+  }
+  boxes.push_back(box);
+}
+
+/// Cuts a ring off where `depth`, linear in the place, is negative.
+template <typename Depth>
+Ring cut_off(const Ring& ring, const Depth& depth) {
+  Ring kept;
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    const Point2 a = ring[i], b = ring[i + 1 < ring.size() ? i + 1 : 0];
+    const double in_a = depth(a), in_b = depth(b);
+    if (in_a >= 0) kept.push_back(a);
+    if ((in_a > 0 && in_b < 0) || (in_a < 0 && in_b > 0))
+      kept.push_back(snap(lerp(a, b, in_a / (in_a - in_b))));
+  }
+  return kept;
+}
+
+}  // namespace
+
+std::vector<Box2> doubtful_places(const Polygons& inset, const Polygons& area, double distance_mm,
+                                  double slack_mm, double margin_mm) {
+  std::vector<Box2> boxes;
+  const Point2 margin{margin_mm, margin_mm};
+  const auto all = [&]() -> std::vector<Box2> {
+    if (area.empty()) return {};
+    const Box2 box = bounding_box(area);
+    return {{snap(box.lower - margin), snap(box.upper + margin)}};
+  };
+  if (inset.empty()) return all();
+  std::size_t places = 0, doubts = 0;
+  const auto visit = [&](Point2 p, bool has_inset) {
+    ++places;
+    if (has_inset) return true;
+    add({snap(p - margin), snap(p + margin)}, boxes);
+    return ++doubts < kManyDoubts || doubts * kLargeShare < places;
+  };
+  Follower follower(inset);
+  for (const Polygon& polygon : area) {
+    if (!RingProof(polygon.outer, distance_mm, slack_mm, follower).look(visit)) return all();
+    for (const Ring& hole : polygon.holes)
+      if (!RingProof(hole, distance_mm, slack_mm, follower).look(visit)) return all();
+  }
+  return boxes;
+}
+
+Polygons clipped(const Polygons& polygons, const Box2& box) {
+  if (polygons.empty() || holds(box, bounding_box(polygons))) return polygons;
+  std::vector<Ring> rings;
+  const auto add_ring = [&](const Ring& ring) {
+    Ring kept = cut_off(ring, [&](Point2 p) { return p.x - box.lower.x; });
+    kept = cut_off(kept, [&](Point2 p) { return box.upper.x - p.x; });
+    kept = cut_off(kept, [&](Point2 p) { return p.y - box.lower.y; });
+    kept = cut_off(kept, [&](Point2 p) { return box.upper.y - p.y; });
+    if (kept.size() >= 3) rings.push_back(std::move(kept));
+  };
+  for (const Polygon& polygon : polygons) {
+    add_ring(polygon.outer);
+    for (const Ring& hole : polygon.holes) add_ring(hole);
+  }
+  return polygons_from_rings(std::move(rings), FillRule::kEvenOdd);
+}
+
+}  // namespace routebench
