@@ -130,7 +130,8 @@ class Rectilinear final : public Planner {
             PlannerRole::kFill,
             "parallel lines, joined along the wall or straight",
             "K. De Keyser, 2016",
-            {{"published", "simple_slicer"}}};
+            {{"published", "simple_slicer"}},
+            2};
   }
 
   explicit Rectilinear(const Params& params) : params_(params) {}

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <exception>
 #include <new>
+#include <numeric>
 #include <utility>
 
 #include "island_tree.hpp"
@@ -24,7 +25,7 @@ constexpr double kWidestMm = 1e3;
 
 std::unique_ptr<const Planner> make_planner(const SlotSpec& slot, PlannerRole role,
                                             const std::string& contender, const Registry& registry,
-                                            ParamSet& resolved) {
+                                            ParamSet& resolved, int& repeats_every) {
   const Registry::Entry& entry = registry.at(slot.planner);
   if (entry.info.role != role) {
     std::string known;
@@ -37,6 +38,7 @@ std::unique_ptr<const Planner> make_planner(const SlotSpec& slot, PlannerRole ro
                     ", or take one of: " + (known.empty() ? "(none is registered)" : known));
   }
   resolved = entry.resolve(slot.params);
+  repeats_every = std::lcm(repeats_every, entry.info.repeats_every);
   return entry.make(slot.params);
 }
 
@@ -143,8 +145,7 @@ struct IslandWork {
 
 void share_out(const Polygons& regions, const IslandTree& tree, std::vector<IslandWork>& islands,
                Polygons IslandWork::*part) {
-  for (const Polygon& region : regions)
-    (islands[islands.size() == 1 ? 0 : tree.island_of(region)].*part).push_back(region);
+  for (const Polygon& region : regions) (islands[tree.island_of(region)].*part).push_back(region);
 }
 
 }  // namespace
@@ -173,9 +174,11 @@ Contender::Contender(ContenderSpec spec, const Registry& registry) : spec_(std::
                 (spec_.name.empty() ? "the contender" : "contender " + spec_.name + ": it") +
                     " has no planner; give it a shell, a fill or both");
   if (spec_.shell)
-    shell_ = make_planner(*spec_.shell, PlannerRole::kShell, spec_.name, registry, shell_params_);
+    shell_ = make_planner(*spec_.shell, PlannerRole::kShell, spec_.name, registry, shell_params_,
+                          repeats_every_);
   if (spec_.fill)
-    fill_ = make_planner(*spec_.fill, PlannerRole::kFill, spec_.name, registry, fill_params_);
+    fill_ = make_planner(*spec_.fill, PlannerRole::kFill, spec_.name, registry, fill_params_,
+                         repeats_every_);
 }
 
 double Contender::peak_rss_bytes() const {
@@ -205,7 +208,7 @@ PlannedLayer Contender::plan(const Layer& layer, const Demand& demand, const Tas
   const Polygons walls = shell_ && task.perimeters > 0 ? demand.outline : Polygons{};
   const Polygons dense = fill_ ? demand.dense : Polygons{};
   const Polygons sparse = fill_ && task.density > 0 ? demand.sparse : Polygons{};
-  if (spec_.order == LayerOrder::kStage || demand.outline.empty()) {
+  if (spec_.order == LayerOrder::kStage || demand.outline.size() <= 1) {
     lay({walls, dense, sparse});
     return assembly.take();
   }

@@ -91,6 +91,49 @@ SlicedModel read_layer_file(const std::string& spec, const Task& task,
   return sliced;
 }
 
+/// Of each layer the lowest one below it, without a gap, that is as it is and has as many layers as
+/// skins reach above and below that are as those about it; itself if there is none.
+std::vector<std::size_t> with_equal_surroundings(const std::vector<Layer>& layers, int reach) {
+  std::vector<std::size_t> original(layers.size());
+  std::size_t equal_from = 0;  // layers from here on are as the highest seen
+  const auto around = static_cast<std::size_t>(std::max(reach, 0));
+  std::iota(original.begin(), original.end(), std::size_t{0});
+  for (std::size_t top = 1; top <= layers.size(); ++top) {
+    if (top < layers.size() && layers[top].polygons == layers[top - 1].polygons &&
+        layers[top].solid == layers[top - 1].solid)
+      continue;
+    const std::size_t lowest = equal_from + around;
+    for (std::size_t i = lowest; i + around < top; ++i) original[i] = lowest;
+    equal_from = top;
+  }
+  return original;
+}
+
+/// Of each chosen layer the place of one before it that has the same route; its own if there is
+/// none.
+std::vector<std::size_t> with_equal_routes(const PreparedModel& model,
+                                           std::span<const std::size_t> chosen, int every) {
+  std::vector<std::size_t> original(chosen.size());
+  std::iota(original.begin(), original.end(), std::size_t{0});
+  if (every == 0) return original;
+  const auto are_alike = [&](std::size_t a, std::size_t b) {
+    const Layer &one = model.sliced.layers[a], &other = model.sliced.layers[b];
+    return (other.index - one.index) % every == 0 && one.height_mm == other.height_mm &&
+           model.demands[a] == model.demands[b];
+  };
+  // Equal layers come one after the other: one that is not like the last of its kind is a new one.
+  std::vector<std::size_t> last(static_cast<std::size_t>(every), 0);
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    const auto kind =
+        static_cast<std::size_t>(((model.sliced.layers[chosen[i]].index % every) + every) % every);
+    if (are_alike(chosen[last[kind]], chosen[i]))
+      original[i] = last[kind];
+    else
+      last[kind] = i;
+  }
+  return original;
+}
+
 Point2 lower_corner(const std::vector<Layer>& layers) {
   Point2 corner{};
   bool found = false;
@@ -117,15 +160,19 @@ SlicedModel slice_model(const std::string& spec, const Task& task, const SliceMo
 std::vector<Demand> demands_of(const SlicedModel& sliced, const Task& task,
                                const ParallelFor& parallel_for) {
   const std::vector<Layer>& layers = sliced.layers;
+  const std::vector<std::size_t> original = with_equal_surroundings(layers, task.skin_layers);
   const bool by_difference = task.skin_rule == SkinRule::kDifference && task.density < 1;
   const SkinFinder skins(layers, by_difference ? task.skin_layers : 0, parallel_for);
   std::vector<Demand> demands(layers.size());
   parallel_for(layers.size(), [&](std::size_t i) {
+    if (original[i] != i) return;
     const bool is_dense = !layers[i].solid.empty();
     demands[i] = demand_of(layers[i], task, [&](const Polygons& inside) {
       return is_dense ? inside : skins.skins_in(inside, i);
     });
   });
+  for (std::size_t i = 0; i < layers.size(); ++i)
+    if (original[i] != i) demands[i] = demands[original[i]];
   return demands;
 }
 
@@ -148,12 +195,22 @@ std::vector<std::size_t> all_layers(const SlicedModel& sliced) {
 std::vector<PlannedLayer> plan_layers(const Contender& contender, const PreparedModel& model,
                                       std::span<const std::size_t> chosen, const Task& task,
                                       std::uint64_t seed, std::stop_token stop,
-                                      const ParallelFor& parallel_for) {
+                                      const ParallelFor& parallel_for, Repeats repeats) {
   std::vector<PlannedLayer> planned(chosen.size());
+  std::vector<std::size_t> original(chosen.size());
+  std::iota(original.begin(), original.end(), std::size_t{0});
+  if (repeats == Repeats::kTakeOver)
+    original = with_equal_routes(model, chosen, contender.repeats_every());
   parallel_for(chosen.size(), [&](std::size_t i) {
+    if (original[i] != i) return;
     planned[i] = contender.plan(model.sliced.layers[chosen[i]], model.demands[chosen[i]], task,
                                 model.sliced.origin, seed, stop);
   });
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    if (original[i] == i) continue;
+    planned[i].route = planned[original[i]].route;
+    planned[i].kinds = planned[original[i]].kinds;
+  }
   return planned;
 }
 

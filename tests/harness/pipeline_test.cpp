@@ -6,8 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "random_polygons.hpp"
 #include "routebench/geometry/error.hpp"
 #include "routebench/geometry/layer_io.hpp"
+#include "routebench/geometry/solid.hpp"
 #include "scratch_dir.hpp"
 
 namespace routebench {
@@ -56,6 +58,73 @@ TEST(SliceModel, LayersOfAFileHaveNoFacets) {
     EXPECT_NE(std::string(error.what()).find("skin_rule"), std::string::npos);
   }
   EXPECT_FALSE(slice_model(file, task, {.find_skins = false}, serial_for).layers.empty());
+}
+
+/// A tower with a step and a roof: runs of equal layers, shorter and longer than skins reach.
+SlicedModel tower() {
+  const Polygon wide{test::rectangle(0, 0, 20, 12), {}}, narrow{test::rectangle(2, 3, 11, 9), {}};
+  SlicedModel model;
+  const auto add = [&](const Polygons& polygons, int count) {
+    for (int i = 0; i < count; ++i) {
+      const int index = static_cast<int>(model.layers.size());
+      Layer& layer = model.layers.emplace_back();
+      layer.index = index;
+      layer.z_mm = 0.1 + 0.2 * index;
+      layer.height_mm = 0.2;
+      layer.polygons = polygons;
+    }
+  };
+  add({wide}, 9);
+  add({narrow}, 10);
+  add({narrow, {test::rectangle(13, 3, 18, 9), {}}}, 2);
+  add({wide}, 5);
+  return model;
+}
+
+TEST(PreparedModel, EqualSurroundingsDemandTheSame) {
+  const Task task;
+  const SlicedModel model = tower();
+  const std::vector<Demand> demands = demands_of(model, task, serial_for);
+  const SkinFinder skins(model.layers, task.skin_layers, serial_for);
+  for (std::size_t i = 0; i < model.layers.size(); ++i) {
+    SCOPED_TRACE(i);
+    EXPECT_EQ(demands[i], demand_of(model.layers[i], task, [&](const Polygons& inside) {
+                return skins.skins_in(inside, i);
+              }));
+  }
+}
+
+TEST(PlanLayers, WhatIsTakenOverIsWhatWouldBePlanned) {
+  const Task task;
+  PreparedModel model{tower(), {}};
+  model.demands = demands_of(model.sliced, task, serial_for);
+  const std::vector<std::size_t> all = all_layers(model.sliced);
+  // Of every third layer, too: those that follow each other are no neighbours then.
+  std::vector<std::size_t> third;
+  for (std::size_t i = 1; i < all.size(); i += 3) third.push_back(i);
+  const PlannerSet planners = load_planners({});
+  for (const std::vector<std::size_t>& chosen : {all, third}) {
+    for (const int every : {1, 2}) {
+      ContenderSpec spec{.name = "walls", .shell = SlotSpec{"greedy_shell", {}}, .fill = {}};
+      if (every == 2) spec.fill = SlotSpec{"rectilinear", {}};
+      const Contender contender(std::move(spec), planners.registry);
+      EXPECT_EQ(contender.repeats_every(), every);
+      const auto plan = [&](Repeats repeats) {
+        return plan_layers(contender, model, chosen, task, 1, {}, serial_for, repeats);
+      };
+      const std::vector<PlannedLayer> planned = plan(Repeats::kPlan);
+      const std::vector<PlannedLayer> taken = plan(Repeats::kTakeOver);
+      ASSERT_EQ(taken.size(), planned.size());
+      std::size_t untimed = 0;
+      for (std::size_t i = 0; i < planned.size(); ++i) {
+        SCOPED_TRACE(i);
+        EXPECT_EQ(taken[i].route, planned[i].route);
+        EXPECT_EQ(taken[i].kinds, planned[i].kinds);
+        untimed += taken[i].plan_wall_ns == 0 ? 1U : 0U;
+      }
+      EXPECT_GT(untimed, 0U);
+    }
+  }
 }
 
 }  // namespace

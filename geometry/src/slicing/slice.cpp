@@ -13,6 +13,7 @@
 #include "slicing/close_gaps.hpp"
 #include "slicing/cut_triangles.hpp"
 #include "slicing/slivers.hpp"
+#include "slicing/straight_points.hpp"
 #include "slicing/voxel_layers.hpp"
 
 namespace routebench {
@@ -246,6 +247,7 @@ Slices slice_mesh(const Mesh& mesh, const SliceOptions& options, const std::stri
     Contours contours = slicing::chain_cuts(table.layer(i), mesh, layer.z_mm);
     if (!contours.open.empty())
       closings[i] = slicing::close_gaps(contours.open, options.crack_mm, contours.rings);
+    for (Ring& ring : contours.rings) slicing::drop_straight_points(ring);
     layer.repaired = closings[i].widest_open_mm > 0;
     if (layer.repaired && !options.repair) return;  // refused below, lowest layer first
     // Where facets gape by a crack they also overlap by as much.

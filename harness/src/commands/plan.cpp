@@ -132,7 +132,8 @@ class Plan {
     std::string reason;
     try {
       planned_ = plan_layers(std::get<Contender>(*source_), model_, chosen_, judge_.task(),
-                             arguments_.seed, {}, parallel_for_);
+                             arguments_.seed, {}, parallel_for_,
+                             arguments_.no_judge ? Repeats::kTakeOver : Repeats::kPlan);
     } catch (const PlannerDied& death) {
       outcome = Outcome::kCrashed;
       reason = death.what();

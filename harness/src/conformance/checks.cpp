@@ -118,6 +118,7 @@ bool leaves_as_published(const PlannerInfo& info, const ParamSet& params) {
 
 /// One way of planning a trial layer.
 struct Trial {
+  const PlannerInfo& info;
   const Planner& planner;
   const Layer& layer;
   const PlanContext& context;
@@ -139,7 +140,7 @@ std::optional<Breach> at_all_corners(const Registry& registry, const std::string
     if (only_inside && leaves_as_published(entry.info, params)) continue;
     const auto planner = entry.make(params);
     for (const PlanContext& context : contexts(entry.info.role))
-      if (std::optional<Seen> seen = look(Trial{*planner, trial.layer, context}))
+      if (std::optional<Seen> seen = look(Trial{entry.info, *planner, trial.layer, context}))
         return Breach{text_of(params), std::move(seen->complaint), std::move(seen->route)};
   }
   return std::nullopt;
@@ -223,6 +224,21 @@ std::optional<Seen> impurity(const Trial& trial) {
   if (thrown) std::rethrow_exception(thrown);
   if (elsewhere != route) return Seen{"another thread got another route", std::move(route)};
   return std::nullopt;
+}
+
+std::optional<Seen> unrepeated(const Trial& trial) {
+  if (trial.info.repeats_every == 0) return std::nullopt;
+  Layer above = trial.layer;
+  above.index += trial.info.repeats_every;
+  above.z_mm += trial.info.repeats_every * above.height_mm;
+  PlanContext context = trial.context;
+  context.seed += 1;
+  Route route = trial.planner.plan(above, context);
+  if (route == trial.planner.plan(trial.layer, trial.context)) return std::nullopt;
+  return Seen{
+      "an equal layer, as many above as it is said to repeat itself after, got another "
+      "route",
+      std::move(route)};
 }
 
 std::optional<Seen> unmoved(const Trial& trial) {
@@ -312,7 +328,7 @@ ConformanceCheck of_defaults(std::string name, std::string promise,
             const Registry::Entry& entry = registry.at(planner);
             const auto made = entry.make({});
             for (const PlanContext& context : contexts(entry.info.role))
-              if (std::optional<Seen> seen = look(Trial{*made, layer.layer, context}))
+              if (std::optional<Seen> seen = look(Trial{entry.info, *made, layer.layer, context}))
                 return Breach{"defaults", std::move(seen->complaint), std::move(seen->route)};
             return std::nullopt;
           }};
@@ -327,6 +343,7 @@ const std::vector<ConformanceCheck>& conformance_checks() {
       of_defaults("beads", "with default parameters beads stay inside the polygons", bead_outside),
       everywhere("pure", "equal arguments give an equal route, after other calls and on any thread",
                  impurity),
+      everywhere("repeats", "equal layers have equal routes as often as it is said", unrepeated),
       everywhere("moves", "the route moves with layer, start and origin", unmoved),
       everywhere("stops", "planning ends soon when it is asked to", going_on),
       {"task", "with default parameters the gate passes layers that have room", task_not_done}};

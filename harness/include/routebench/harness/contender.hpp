@@ -92,6 +92,10 @@ class Contender {
   /// if that took more.
   [[nodiscard]] double peak_rss_bytes() const;
 
+  /// After how many layers the routes of equal layers are equal again; 0 if a planner does not
+  /// promise it. See PlannerInfo.
+  [[nodiscard]] int repeats_every() const noexcept { return repeats_every_; }
+
   [[nodiscard]] const ContenderSpec& spec() const noexcept { return spec_; }
   /// The slots' parameters, all of them.
   [[nodiscard]] const ParamSet& shell_params() const noexcept { return shell_params_; }
@@ -101,6 +105,7 @@ class Contender {
   ContenderSpec spec_;
   ParamSet shell_params_;
   ParamSet fill_params_;
+  int repeats_every_ = 1;
   std::unique_ptr<const Planner> shell_;
   std::unique_ptr<const Planner> fill_;
 };

@@ -118,15 +118,20 @@ struct PreparedModel {
 /// nothing out.
 [[nodiscard]] std::vector<std::size_t> all_layers(const SlicedModel& sliced);
 
+/// Whether each layer is planned for itself, or one takes over what an equal layer has got, where
+/// the planners promise that its own would be equal (see PlannerInfo::repeats_every).
+enum class Repeats { kPlan, kTakeOver };
+
 /// Plans the chosen layers. Times are those of each call to plan() alone; wall times are to be
-/// trusted only if no other thread competes, that is with serial_for.
+/// trusted only if no other thread competes, that is with serial_for; what is taken over has none.
 ///
 /// Takes   places in the model's layers, ascending.
 /// Returns one planned layer for each of them.
 /// Throws  what Contender::plan throws, of the lowest such layer.
 [[nodiscard]] std::vector<PlannedLayer> plan_layers(
     const Contender& contender, const PreparedModel& model, std::span<const std::size_t> chosen,
-    const Task& task, std::uint64_t seed, std::stop_token stop, const ParallelFor& parallel_for);
+    const Task& task, std::uint64_t seed, std::stop_token stop, const ParallelFor& parallel_for,
+    Repeats repeats = Repeats::kPlan);
 
 /// A cell's scores.
 struct JudgedCell {
