@@ -113,9 +113,13 @@ def cura_settings() -> list[str]:
 
 
 def cura_definitions() -> Path | None:
-    """fdmprinter.def.json, on CURA_ENGINE_SEARCH_PATH or where Debian's cura has it."""
+    """fdmprinter.def.json, on CURA_ENGINE_SEARCH_PATH, where Debian's cura has it, or where
+    install_slicers.sh has unpacked that package."""
     folders = os.environ.get("CURA_ENGINE_SEARCH_PATH", "").split(":")
-    for folder in [*filter(None, folders), "/usr/share/cura/resources/definitions"]:
+    resources = "usr/share/cura/resources/definitions"
+    cache = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+    for folder in [*filter(None, folders), Path("/") / resources,
+                   cache / "routebench" / "cura" / resources]:
         if (Path(folder) / "fdmprinter.def.json").is_file():
             return Path(folder) / "fdmprinter.def.json"
     return None

@@ -207,8 +207,12 @@ class Concentric final : public Planner {
   using Params = ConcentricParams;
 
   static PlannerInfo info() {
-    return {"concentric", PlannerRole::kFill, "loops inside loops, joined to one stroke or not",
-            "K. De Keyser, 2016"};
+    return {"concentric",
+            PlannerRole::kFill,
+            "loops inside loops, joined to one stroke or not",
+            "K. De Keyser, 2016",
+            {},
+            1};
   }
 
   explicit Concentric(const Params& params) : params_(resolved(params)) {}
@@ -231,8 +235,6 @@ class Concentric final : public Planner {
     std::move(lines.begin(), lines.end(), std::back_inserter(route.strokes));
     return frame.from_frame(std::move(route));
   }
-
-  [[nodiscard]] int period_layers() const noexcept override { return 1; }
 
  private:
   ConcentricParams params_;

@@ -83,7 +83,8 @@ class Eulerian final : public Planner {
             PlannerRole::kFill,
             "Euler circuits: each connected part in one closed stroke",
             "S. Lei, 2015",
-            {{"jump", "extrude"}, {"variant", "published"}}};
+            {{"jump", "extrude"}, {"variant", "published"}},
+            2};
   }
 
   explicit Eulerian(const Params& params) : params_(resolved(params)) {}
@@ -117,8 +118,6 @@ class Eulerian final : public Planner {
     return frame.from_frame(
         {eulerian::nearest_entry_first(std::move(strokes), frame.start(), context)});
   }
-
-  [[nodiscard]] int period_layers() const noexcept override { return 2; }
 
  private:
   using Polylines = std::vector<std::vector<Point2>>;

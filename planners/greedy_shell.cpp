@@ -132,7 +132,7 @@ std::vector<bool> entries(const Pool& pool, const SeamRule& seam) {
   return may_begin;
 }
 
-// The three searches answer the same question: which segment comes next for a nozzle at `from`, if
+// The searches answer the same question: which segment comes next for a nozzle at `from`, if
 // `follower` (nothing at the end of a ring) begins just there? It is the nearest of all, so it
 // always wins.
 
@@ -159,6 +159,22 @@ class NaiveSearch {
  private:
   const Pool& pool_;
   std::vector<bool> may_begin_;
+};
+
+/// For few rings: looks at every segment that is left, but only where a ring ends.
+class ScanSearch {
+ public:
+  static constexpr std::size_t kMostRings = 4;
+
+  ScanSearch(const Pool& pool, const SeamRule& seam) : naive_(pool, seam) {}
+
+  std::optional<std::uint32_t> next(Point2 from, std::optional<std::uint32_t> follower) const {
+    return follower ? follower : naive_.next(from, std::nullopt);
+  }
+  void remove(std::uint32_t segment) { naive_.remove(segment); }
+
+ private:
+  NaiveSearch naive_;
 };
 
 class GridSearch {
@@ -285,9 +301,12 @@ class GreedyShell final : public Planner {
   using Params = ShellParams;
 
   static PlannerInfo info() {
-    return {"greedy_shell", PlannerRole::kShell,
+    return {"greedy_shell",
+            PlannerRole::kShell,
             "walls, always going to the nearest segment that is not yet printed",
-            "K. De Keyser, 2016"};
+            "K. De Keyser, 2016",
+            {},
+            1};
   }
 
   explicit GreedyShell(const Params& params) : params_(params), seam_(params.seam) {}
@@ -304,7 +323,9 @@ class GreedyShell final : public Planner {
         route.strokes.push_back(std::move(stroke));
       nozzle = route.strokes.back().points.back();
     };
-    if (params_.chain == Chain::kLinear) {
+    if (islands.size() == 1) {
+      lay_all(islands.front());
+    } else if (params_.chain == Chain::kLinear) {
       std::stable_sort(islands.begin(), islands.end(), [](const Island& a, const Island& b) {
         return less_by_x(leftmost(a), leftmost(b));
       });
@@ -315,8 +336,6 @@ class GreedyShell final : public Planner {
     }
     return frame.from_frame(std::move(route));
   }
-
-  [[nodiscard]] int period_layers() const noexcept override { return 1; }
 
  private:
   [[nodiscard]] std::vector<Island> islands_of(const Polygons& polygons,
@@ -390,6 +409,8 @@ class GreedyShell final : public Planner {
       walk(pool, LinearOrder(pool, seam_), context, nozzle, route);
     else if (params_.search == SearchKind::kNaive)
       walk(pool, NaiveSearch(pool, seam_), context, nozzle, route);
+    else if (pool.rings() <= ScanSearch::kMostRings)
+      walk(pool, ScanSearch(pool, seam_), context, nozzle, route);
     else
       walk(pool, GridSearch(pool, seam_), context, nozzle, route);
   }

@@ -130,7 +130,8 @@ class Rectilinear final : public Planner {
             PlannerRole::kFill,
             "parallel lines, joined along the wall or straight",
             "K. De Keyser, 2016",
-            {{"published", "simple_slicer"}}};
+            {{"published", "simple_slicer"}},
+            2};
   }
 
   explicit Rectilinear(const Params& params) : params_(params) {}
@@ -160,8 +161,6 @@ class Rectilinear final : public Planner {
                                  ? to_and_fro(std::move(strokes))
                                  : nearest_first(std::move(strokes), frame.start(), context)});
   }
-
-  [[nodiscard]] int period_layers() const noexcept override { return 2; }
 
  private:
   /// The regions without what is too narrow for two lines side by side: one line of its own width

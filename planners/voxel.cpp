@@ -57,7 +57,8 @@ class Voxel final : public Planner {
             PlannerRole::kFill,
             "cells of a grid: the outline's as walls, the inner in rows",
             "K. De Keyser, 2016",
-            {{"rim", "published"}, {"variant", "published"}}};
+            {{"rim", "published"}, {"variant", "published"}},
+            2};
   }
 
   explicit Voxel(const Params& params) : params_(params) {
@@ -82,8 +83,6 @@ class Voxel final : public Planner {
     }
     return frame.from_frame({nearest_first(std::move(strokes), frame.start(), context)});
   }
-
-  [[nodiscard]] int period_layers() const noexcept override { return 2; }
 
  private:
   [[nodiscard]] bool moves_inside() const { return params_.rim == Rim::kInside; }

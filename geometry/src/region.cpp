@@ -233,13 +233,57 @@ cl::Path cleaned(const cl::Path& path) {
   return to_clipper(simplified_ring(std::move(ring), kCleanMm));
 }
 
+/// Whether a ring has room between two lines so far apart: then nothing is left of it when its
+/// boundary moves inwards by half of that. Says no rather than look at every direction.
+bool fits_between_lines(const Ring& ring, double apart_mm) {
+  if (apart_mm <= 0) return false;
+  const Point2 origin = ring.front();
+  Point2 low{}, high{}, sum{};
+  double twice_area = 0, xx = 0, xy = 0, yy = 0;
+  Point2 before = ring.back() - origin;
+  for (const Point2 point : ring) {
+    const Point2 p = point - origin;
+    twice_area += cross(before, p);
+    low = {std::min(low.x, p.x), std::min(low.y, p.y)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+    before = p;
+  }
+  const double least = std::min(high.x - low.x, high.y - low.y);
+  if (least < apart_mm) return true;
+  if (std::abs(twice_area) > 2 * apart_mm * distance(low, high)) return false;
+  // Across the direction in which the points are spread most.
+  for (const Point2 point : ring) {
+    const Point2 p = point - origin;
+    sum = sum + p;
+    xx += p.x * p.x;
+    xy += p.x * p.y;
+    yy += p.y * p.y;
+  }
+  const auto n = static_cast<double>(ring.size());
+  xx -= sum.x * sum.x / n;
+  xy -= sum.x * sum.y / n;
+  yy -= sum.y * sum.y / n;
+  const double half = (xx - yy) / 2, root = std::sqrt(half * half + xy * xy);
+  const Point2 along = half > 0 ? Point2{half + root, xy} : Point2{xy, root - half};
+  double lowest = 0, highest = 0;
+  for (const Point2 point : ring) {
+    const double height = cross(along, point - origin);
+    lowest = std::min(lowest, height);
+    highest = std::max(highest, height);
+  }
+  return highest - lowest < apart_mm * std::sqrt(dot(along, along));
+}
+
 }  // namespace
 
 Polygons offset(const Polygons& polygons, double distance_mm, Join join) {
   if (distance_mm == 0 || polygons.empty()) return polygons;
   // A mitre is at most twice as long as the distance.
   ToGrid grid(2 * std::abs(distance_mm));
-  if (join == Join::kMiter && grid.add(polygons, {1, 0}))
+  const auto add = [&](const Polygon& polygon) {
+    return fits_between_lines(polygon.outer, -2 * distance_mm) || grid.add(polygon, {1, 0});
+  };
+  if (join == Join::kMiter && std::all_of(polygons.begin(), polygons.end(), add))
     if (const auto faces = overlay::offset_rings(grid.take(), distance_mm * kGridUnitsPerMm,
                                                  kCleanMm * kGridUnitsPerMm))
       return overlay::to_polygons(*faces);

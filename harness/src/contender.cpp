@@ -25,7 +25,7 @@ constexpr double kWidestMm = 1e3;
 
 std::unique_ptr<const Planner> make_planner(const SlotSpec& slot, PlannerRole role,
                                             const std::string& contender, const Registry& registry,
-                                            ParamSet& resolved) {
+                                            ParamSet& resolved, int& repeats_every) {
   const Registry::Entry& entry = registry.at(slot.planner);
   if (entry.info.role != role) {
     std::string known;
@@ -38,6 +38,7 @@ std::unique_ptr<const Planner> make_planner(const SlotSpec& slot, PlannerRole ro
                     ", or take one of: " + (known.empty() ? "(none is registered)" : known));
   }
   resolved = entry.resolve(slot.params);
+  repeats_every = entry.info.repeats_every;
   return entry.make(slot.params);
 }
 
@@ -82,13 +83,14 @@ class LayerAssembly {
       : layer_(layer), task_(task), context_(std::move(context)), memo_(memo) {}
 
   /// Has one planner lay a region from where the nozzle is, and appends its route.
-  void lay(const Planner* planner, const std::string& name, StrokeKind kind, Polygons region) {
+  void lay(const Planner* planner, const std::string& name, int repeats_every, StrokeKind kind,
+           Polygons region) {
     if (planner == nullptr || region.empty()) return;
     stop_if_asked(context_);
     const Layer part{layer_.index,      layer_.z_mm, layer_.height_mm,
                      std::move(region), {},          layer_.repaired};
     context_.density = kind == StrokeKind::kSparse ? task_.density : 1;
-    Route route = known_or_planned(*planner, name, part);
+    Route route = known_or_planned(*planner, name, repeats_every, part);
     if (route.strokes.empty()) return;
     context_.start = route.strokes.back().points.back();
     planned_.kinds.insert(planned_.kinds.end(), route.strokes.size(), kind);
@@ -100,14 +102,17 @@ class LayerAssembly {
   [[nodiscard]] PlannedLayer take() { return std::move(planned_); }
 
  private:
-  Route known_or_planned(const Planner& planner, const std::string& name, const Layer& part) {
-    const bool may_be_known = memo_ != nullptr && planner.period_layers() > 0;
+  Route known_or_planned(const Planner& planner, const std::string& name, int repeats_every,
+                         const Layer& part) {
+    const bool may_be_known = memo_ != nullptr && repeats_every > 0;
+    const PlanMemo::Question question{&planner, may_be_known ? part.index % repeats_every : 0,
+                                      part.height_mm, context_.start, context_.density};
     if (may_be_known)
-      if (std::optional<Route> known = memo_->find(planner, part, context_))
+      if (std::optional<Route> known = memo_->find(question, part.polygons))
         return *std::move(known);
     Route route = plan_part(planner, name, part);
     if (const std::string fault = fault_of(route); !fault.empty()) throw failure(name, fault);
-    if (may_be_known) memo_->keep(planner, part, context_, route);
+    if (may_be_known) memo_->keep(question, part.polygons, route);
     return route;
   }
 
@@ -155,8 +160,7 @@ struct IslandWork {
 
 void share_out(const Polygons& regions, const IslandTree& tree, std::vector<IslandWork>& islands,
                Polygons IslandWork::*part) {
-  for (const Polygon& region : regions)
-    (islands[islands.size() == 1 ? 0 : tree.island_of(region)].*part).push_back(region);
+  for (const Polygon& region : regions) (islands[tree.island_of(region)].*part).push_back(region);
 }
 
 }  // namespace
@@ -185,9 +189,11 @@ Contender::Contender(ContenderSpec spec, const Registry& registry) : spec_(std::
                 (spec_.name.empty() ? "the contender" : "contender " + spec_.name + ": it") +
                     " has no planner; give it a shell, a fill or both");
   if (spec_.shell)
-    shell_ = make_planner(*spec_.shell, PlannerRole::kShell, spec_.name, registry, shell_params_);
+    shell_ = make_planner(*spec_.shell, PlannerRole::kShell, spec_.name, registry, shell_params_,
+                          shell_repeats_every_);
   if (spec_.fill)
-    fill_ = make_planner(*spec_.fill, PlannerRole::kFill, spec_.name, registry, fill_params_);
+    fill_ = make_planner(*spec_.fill, PlannerRole::kFill, spec_.name, registry, fill_params_,
+                         fill_repeats_every_);
 }
 
 double Contender::peak_rss_bytes() const {
@@ -211,14 +217,17 @@ PlannedLayer Contender::plan(const Layer& layer, const Demand& demand, const Tas
   const std::string shell_name = spec_.shell ? spec_.shell->planner : std::string();
   const std::string fill_name = spec_.fill ? spec_.fill->planner : std::string();
   const auto lay = [&](IslandWork work) {
-    assembly.lay(shell_.get(), shell_name, StrokeKind::kWall, std::move(work.walls));
-    assembly.lay(fill_.get(), fill_name, StrokeKind::kDense, std::move(work.dense));
-    assembly.lay(fill_.get(), fill_name, StrokeKind::kSparse, std::move(work.sparse));
+    assembly.lay(shell_.get(), shell_name, shell_repeats_every_, StrokeKind::kWall,
+                 std::move(work.walls));
+    assembly.lay(fill_.get(), fill_name, fill_repeats_every_, StrokeKind::kDense,
+                 std::move(work.dense));
+    assembly.lay(fill_.get(), fill_name, fill_repeats_every_, StrokeKind::kSparse,
+                 std::move(work.sparse));
   };
   const Polygons walls = shell_ && task.perimeters > 0 ? demand.outline : Polygons{};
   const Polygons dense = fill_ ? demand.dense : Polygons{};
   const Polygons sparse = fill_ && task.density > 0 ? demand.sparse : Polygons{};
-  if (spec_.order == LayerOrder::kStage || demand.outline.empty()) {
+  if (spec_.order == LayerOrder::kStage || demand.outline.size() <= 1) {
     lay({walls, dense, sparse});
     return assembly.take();
   }

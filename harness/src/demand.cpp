@@ -5,6 +5,30 @@
 #include "routebench/geometry/region.hpp"
 
 namespace routebench {
+namespace {
+
+bool meet(const Box2& a, const Box2& b) {
+  return a.lower.x <= b.upper.x && b.lower.x <= a.upper.x && a.lower.y <= b.upper.y &&
+         b.lower.y <= a.upper.y;
+}
+
+/// What skins leave of each polygon: of most of them all, so that there is nothing to clip.
+Polygons rest_of(const Polygons& inside, const Polygons& dense) {
+  if (dense.empty()) return inside;
+  std::vector<Box2> boxes;
+  for (const Polygon& skin : dense) boxes.push_back(bounding_box({skin}));
+  Polygons rest;
+  for (const Polygon& polygon : inside) {
+    const Box2 box = bounding_box({polygon});
+    Polygons near;
+    for (std::size_t i = 0; i < dense.size(); ++i)
+      if (meet(box, boxes[i])) near.push_back(dense[i]);
+    for (Polygon& piece : subtract({polygon}, near)) rest.push_back(std::move(piece));
+  }
+  return rest;
+}
+
+}  // namespace
 
 Polygons inside_of(const Layer& layer, const Task& task) {
   Polygons inside = layer.polygons;
@@ -28,7 +52,7 @@ Demand demand_of(const Layer& layer, const Task& task, Polygons inside,
     return demand;
   }
   demand.dense = without_thin_parts(skins_in(demand.inside), task.line_width_mm);
-  demand.sparse = subtract(demand.inside, demand.dense);
+  demand.sparse = rest_of(demand.inside, demand.dense);
   return demand;
 }
 

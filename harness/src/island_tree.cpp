@@ -4,6 +4,7 @@
 #include <cassert>
 
 #include "routebench/geometry/grid.hpp"
+#include "routebench/geometry/region.hpp"
 #include "routebench/geometry/vec.hpp"
 
 namespace routebench {
@@ -45,6 +46,30 @@ Point2 inner_point(const Polygon& polygon) {
   return best;
 }
 
+/// The islands' indices, so that those which follow each other lie near each other: along a curve
+/// that fills the plane. Source: G. M. Morton, 1966.
+std::vector<std::uint32_t> near_each_other(const Polygons& islands) {
+  const Box2 box = bounding_box(islands);
+  const double extent_mm =
+      std::max({box.upper.x - box.lower.x, box.upper.y - box.lower.y, 1 / kGridUnitsPerMm});
+  const auto spread = [&](double share) {  // its 16 bits at even places
+    auto bits = static_cast<std::uint32_t>(share * 65535);
+    for (int shift = 8; shift > 0; shift /= 2)
+      bits = (bits | bits << shift) & (0xFFFFFFFFU / ((1U << shift) + 1));
+    return bits;
+  };
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> places;
+  for (std::uint32_t i = 0; i < islands.size(); ++i) {
+    const Point2 from_corner = islands[i].outer.front() - box.lower;
+    places.emplace_back(spread(from_corner.x / extent_mm) | spread(from_corner.y / extent_mm) << 1,
+                        i);
+  }
+  std::sort(places.begin(), places.end());
+  std::vector<std::uint32_t> order;
+  for (const auto& [place, island] : places) order.push_back(island);
+  return order;
+}
+
 }  // namespace
 
 IslandTree::IslandTree(const Polygons& islands)
@@ -53,7 +78,7 @@ IslandTree::IslandTree(const Polygons& islands)
     for (std::size_t i = 0; i < ring.size(); ++i)
       edges_.push_back({ring[i], ring[(i + 1) % ring.size()], island});
   };
-  for (std::uint32_t i = 0; i < islands.size(); ++i) {
+  for (const std::uint32_t i : near_each_other(islands)) {
     add_ring(islands[i].outer, i);
     for (const Ring& hole : islands[i].holes) add_ring(hole, i);
   }
@@ -70,26 +95,26 @@ void IslandTree::build(std::size_t node, std::uint32_t begin, std::uint32_t end)
   made.begin = begin;
   made.end = end;
   made.waiting = end - begin;
-  for (std::uint32_t e = begin; e < end; ++e) {
-    for (const Point2 p : {edges_[e].a, edges_[e].b}) {
-      made.lower = {std::min(made.lower.x, p.x), std::min(made.lower.y, p.y)};
-      made.upper = {std::max(made.upper.x, p.x), std::max(made.upper.y, p.y)};
-    }
-  }
+  const auto reach = [&](Point2 lower, Point2 upper) {
+    made.lower = {std::min(made.lower.x, lower.x), std::min(made.lower.y, lower.y)};
+    made.upper = {std::max(made.upper.x, upper.x), std::max(made.upper.y, upper.y)};
+  };
   nodes_[node] = made;
   if (is_leaf(node)) {
-    for (std::uint32_t e = begin; e < end; ++e)
-      leaves_of_[edges_[e].island].push_back(static_cast<std::uint32_t>(node));
-    return;
+    for (std::uint32_t e = begin; e < end; ++e) {
+      for (const Point2 p : {edges_[e].a, edges_[e].b}) reach(p, p);
+      std::vector<std::uint32_t>& leaves = leaves_of_[edges_[e].island];
+      leaves.push_back(static_cast<std::uint32_t>(node));
+    }
+  } else {
+    // Neighbours along a ring are neighbours in the plane, so there is no need to sort.
+    const std::uint32_t middle = begin + (end - begin) / 2;
+    build(2 * node + 1, begin, middle);
+    build(2 * node + 2, middle, end);
+    for (const Node& half : {nodes_[2 * node + 1], nodes_[2 * node + 2]})
+      reach(half.lower, half.upper);
   }
-  const std::uint32_t middle = begin + (end - begin) / 2;
-  const bool by_x = made.upper.x - made.lower.x > made.upper.y - made.lower.y;
-  std::nth_element(edges_.begin() + begin, edges_.begin() + middle, edges_.begin() + end,
-                   [by_x](const Edge& s, const Edge& t) {
-                     return by_x ? s.a.x + s.b.x < t.a.x + t.b.x : s.a.y + s.b.y < t.a.y + t.b.y;
-                   });
-  build(2 * node + 1, begin, middle);
-  build(2 * node + 2, middle, end);
+  nodes_[node] = made;
 }
 
 std::optional<std::size_t> IslandTree::nearest(Point2 p) const {

@@ -12,8 +12,10 @@
 namespace routebench {
 
 /// A balanced tree over the edges of a layer's polygons (its islands), from which islands are taken
-/// one by one. Cost   construction O(E log E) for E edges; taking all islands O(E log E) in all; a
-/// query O(log E) where edges lie apart.
+/// one by one.
+/// Cost  construction O(E + I log I) for E edges of I islands; taking all islands O(E log E) in
+/// all;
+///       a query O(log E) where edges lie apart.
 class IslandTree {
  public:
   explicit IslandTree(const Polygons& islands);

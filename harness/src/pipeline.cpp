@@ -97,6 +97,21 @@ SlicedModel read_layer_file(const std::string& spec, const Task& task,
   return sliced;
 }
 
+/// Of each layer the lowest one of its run of equal layers if both have as many of the run above
+/// and below as skins reach; itself if that is not so.
+std::vector<std::size_t> first_of_equal_surroundings(const std::vector<Layer>& layers,
+                                                     std::span<const std::size_t> first,
+                                                     int skin_layers) {
+  const auto reach = static_cast<std::size_t>(std::max(skin_layers, 0));
+  std::vector<std::size_t> original(layers.size());
+  for (std::size_t i = 0; i < layers.size(); ++i) {
+    const std::size_t lowest = first[i] + reach;
+    const bool is_clear = lowest <= i && i + reach < layers.size() && first[i + reach] == first[i];
+    original[i] = is_clear && layers[lowest].solid == layers[i].solid ? lowest : i;
+  }
+  return original;
+}
+
 Point2 lower_corner(const std::vector<Layer>& layers) {
   Point2 corner{};
   bool found = false;
@@ -126,17 +141,22 @@ std::vector<Demand> demands_of(const SlicedModel& sliced, const Task& task,
   const bool by_difference = task.skin_rule == SkinRule::kDifference && task.density < 1;
   const SkinFinder skins(layers, by_difference ? task.skin_layers : 0, parallel_for);
   const std::vector<std::size_t> first = first_of_equal_layers(layers);
+  const std::vector<std::size_t> original =
+      first_of_equal_surroundings(layers, first, task.skin_layers);
   std::vector<Polygons> insides(layers.size());
   parallel_for(layers.size(), [&](std::size_t i) {
     if (first[i] == i) insides[i] = inside_of(layers[i], task);
   });
   std::vector<Demand> demands(layers.size());
   parallel_for(layers.size(), [&](std::size_t i) {
+    if (original[i] != i) return;
     const bool is_dense = !layers[i].solid.empty();
     demands[i] = demand_of(layers[i], task, insides[first[i]], [&](const Polygons& inside) {
       return is_dense ? inside : skins.skins_in(inside, i);
     });
   });
+  for (std::size_t i = 0; i < layers.size(); ++i)
+    if (original[i] != i) demands[i] = demands[original[i]];
   return demands;
 }
 
@@ -159,28 +179,20 @@ std::vector<std::size_t> all_layers(const SlicedModel& sliced) {
 std::vector<PlannedLayer> plan_layers(const Contender& contender, const PreparedModel& model,
                                       std::span<const std::size_t> chosen, const Task& task,
                                       std::uint64_t seed, std::stop_token stop,
-                                      const ParallelFor& parallel_for) {
-  std::vector<PlannedLayer> planned(chosen.size());
-  parallel_for(chosen.size(), [&](std::size_t i) {
-    planned[i] = contender.plan(model.sliced.layers[chosen[i]], model.demands[chosen[i]], task,
-                                model.sliced.origin, seed, stop);
-  });
-  return planned;
-}
-
-std::vector<PlannedLayer> plan_job(const Contender& contender, const PreparedModel& model,
-                                   std::span<const std::size_t> chosen, const Task& task,
-                                   std::uint64_t seed, std::stop_token stop,
-                                   const ParallelFor& parallel_for) {
+                                      const ParallelFor& parallel_for, Repeats repeats) {
   const std::vector<Layer>& layers = model.sliced.layers;
-  const std::vector<std::size_t> first = first_of_equal_layers(layers);
+  std::vector<std::size_t> first;
+  if (repeats == Repeats::kTakeOver) first = first_of_equal_layers(layers);
+  const auto has_equals = [&](std::size_t layer) {
+    return !first.empty() &&
+           (first[layer] != layer || (layer + 1 < layers.size() && first[layer + 1] == layer));
+  };
   PlanMemo memo;
   std::vector<PlannedLayer> planned(chosen.size());
   parallel_for(chosen.size(), [&](std::size_t i) {
-    const std::size_t at = chosen[i];
-    const bool has_equals = first[at] != at || (at + 1 < layers.size() && first[at + 1] == at);
-    planned[i] = contender.plan(layers[at], model.demands[at], task, model.sliced.origin, seed,
-                                stop, has_equals ? &memo : nullptr);
+    planned[i] =
+        contender.plan(layers[chosen[i]], model.demands[chosen[i]], task, model.sliced.origin, seed,
+                       stop, has_equals(chosen[i]) ? &memo : nullptr);
   });
   return planned;
 }

@@ -24,34 +24,21 @@ std::uint64_t hash_of(const Polygons& region) {
   return hash;
 }
 
-int phase_of(const Planner& planner, const Layer& part) {
-  return part.index % planner.period_layers();
-}
-
 }  // namespace
 
-std::optional<Route> PlanMemo::find(const Planner& planner, const Layer& part,
-                                    const PlanContext& context) {
-  const std::uint64_t hash = hash_of(part.polygons);
-  const int phase = phase_of(planner, part);
+std::optional<Route> PlanMemo::find(const Question& question, const Polygons& region) {
+  const std::uint64_t hash = hash_of(region);
   const std::scoped_lock lock(mutex_);
   const auto [begin, end] = entries_.equal_range(hash);
-  for (auto at = begin; at != end; ++at) {
-    const Entry& entry = at->second;
-    if (entry.planner == &planner && entry.phase == phase && entry.height_mm == part.height_mm &&
-        entry.start == context.start && entry.density == context.density &&
-        entry.region == part.polygons)
-      return entry.route;
-  }
+  for (auto at = begin; at != end; ++at)
+    if (at->second.question == question && at->second.region == region) return at->second.route;
   return std::nullopt;
 }
 
-void PlanMemo::keep(const Planner& planner, const Layer& part, const PlanContext& context,
-                    const Route& route) {
-  const std::uint64_t hash = hash_of(part.polygons);
+void PlanMemo::keep(const Question& question, const Polygons& region, const Route& route) {
+  const std::uint64_t hash = hash_of(region);
   const std::scoped_lock lock(mutex_);
-  entries_.emplace(hash, Entry{&planner, phase_of(planner, part), part.height_mm, context.start,
-                               context.density, part.polygons, route});
+  entries_.emplace(hash, Entry{question, region, route});
 }
 
 }  // namespace routebench

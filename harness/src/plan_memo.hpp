@@ -14,30 +14,30 @@ namespace routebench {
 /// task, one model. May be asked from any thread.
 class PlanMemo {
  public:
-  /// The route that was kept for an equal region, from an equal start, at an equal density, a
-  /// multiple of the planner's period_layers away; nothing if there is none.
-  /// Cost   linear in the region's vertices, and in those of the route.
-  [[nodiscard]] std::optional<Route> find(const Planner& planner, const Layer& part,
-                                          const PlanContext& context);
-
-  /// Takes a planner with a period.
-  void keep(const Planner& planner, const Layer& part, const PlanContext& context,
-            const Route& route);
-
- private:
-  struct Entry {
+  /// What the route of a region depends on, beside the region and what is the same in all the job.
+  struct Question {
     const Planner* planner;
-    int phase;  ///< the layer's index, of those in a period
+    int phase;  ///< the layer's index modulo PlannerInfo::repeats_every
     double height_mm;
     Point2 start;
     double density;
+    friend bool operator==(const Question&, const Question&) = default;
+  };
+
+  /// The route that was kept for an equal region and question; nothing if there is none.
+  /// Cost   linear in the region's vertices, and in those of the route.
+  [[nodiscard]] std::optional<Route> find(const Question& question, const Polygons& region);
+  void keep(const Question& question, const Polygons& region, const Route& route);
+
+ private:
+  struct Entry {
+    Question question;
     Polygons region;
     Route route;
   };
-  using Entries = std::unordered_multimap<std::uint64_t, Entry>;
 
   std::mutex mutex_;
-  Entries entries_;  ///< never erased
+  std::unordered_multimap<std::uint64_t, Entry> entries_;  ///< by a hash of the region
 };
 
 }  // namespace routebench

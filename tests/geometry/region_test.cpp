@@ -51,6 +51,26 @@ TEST(Region, FillRulesCountWindingsAsNamed) {
   EXPECT_DOUBLE_EQ(area_mm2(polygons_from_rings({clockwise}, FillRule::kPositive)), 0);
 }
 
+TEST(Region, BarsVanishWhenTheirSidesMeetWhicheverWayTheyLie) {
+  constexpr double kWidth = 0.8, kLength = 12;
+  for (int degrees = 0; degrees < 180; degrees += 7) {
+    SCOPED_TRACE(degrees);
+    const double angle = degrees * std::numbers::pi / 180;
+    const Point2 along{std::cos(angle), std::sin(angle)}, across{-along.y, along.x};
+    Polygon bar;
+    for (const auto& [x, y] :
+         {std::pair{0.0, 0.0}, {kLength, 0.0}, {kLength, kWidth}, {0.0, kWidth}})
+      bar.outer.push_back(snap(x * along + y * across));
+    // Beside a block that stays.
+    const Polygons both{bar, {rectangle(20, 20, 30, 30), {}}};
+    const double just_mm = kWidth / 2 - 0.02;
+    const double left_mm2 = 2 * 0.02 * (kLength - 2 * just_mm);
+    EXPECT_NEAR(area_mm2(offset({bar}, -just_mm)), left_mm2, 1e-3);
+    EXPECT_TRUE(offset({bar}, -kWidth / 2 - 1e-4).empty());
+    EXPECT_NEAR(area_mm2(offset(both, -kWidth / 2 - 1e-4)), (10 - kWidth) * (10 - kWidth), 1e-2);
+  }
+}
+
 TEST(Region, IslandInAHoleIsItsOwnPolygon) {
   const Polygons nested = polygons_from_rings(
       {rectangle(0, 0, 10, 10), rectangle(1, 1, 9, 9), rectangle(2, 2, 8, 8)}, FillRule::kEvenOdd);

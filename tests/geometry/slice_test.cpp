@@ -9,6 +9,7 @@
 #include "meshes.hpp"
 #include "routebench/geometry/error.hpp"
 #include "routebench/geometry/grid.hpp"
+#include "routebench/geometry/model.hpp"
 #include "routebench/geometry/region.hpp"
 
 namespace routebench {
@@ -125,6 +126,17 @@ TEST(SliceMesh, AreaIsThatOfTheTriangleCuts) {
         const double expected = test::cut_area_mm2(mesh, layer.z_mm);
         EXPECT_NEAR(area_mm2(layer.polygons), expected, 1e-6 * expected + 1e-4);
       }
+}
+
+TEST(SliceMesh, UprightWallsHaveTheSameContourInEveryLayer) {
+  // Wherever the diagonals of their facets run.
+  for (const std::string spec : {"shape:cylinder", "shape:gear", "shape:grate"}) {
+    SCOPED_TRACE(spec);
+    const std::vector<Layer> layers =
+        slice_mesh(load_model(spec).mesh, {.straight_mm = 0.001}, spec).layers;
+    ASSERT_GT(layers.size(), 3u);
+    for (const Layer& layer : layers) EXPECT_EQ(layer.polygons, layers[0].polygons);
+  }
 }
 
 TEST(SliceMesh, SumOfAreasApproachesTheVolume) {

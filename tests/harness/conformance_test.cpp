@@ -32,9 +32,10 @@ enum class Fault {
   kBeadOutside,
   kRemembers,
   kDependsOnThread,
+  kDrawsLots,
+  kCountsLayers,
   kStays,
   kDeaf,
-  kComesNotAgain,
   kLeavesOut
 };
 
@@ -48,6 +49,7 @@ class Rings final : public Planner {
   };
   static PlannerInfo info() {
     PlannerInfo info{"rings", PlannerRole::kFill, "rings inside one another", ""};
+    info.repeats_every = 1;
     if (fault == Fault::kOutsideAsPublished) info.may_leave = {{"faulty", "true"}};
     return info;
   }
@@ -70,8 +72,6 @@ class Rings final : public Planner {
     if (params_.faulty) spoil(route, layer, context);
     return route;
   }
-
-  [[nodiscard]] int period_layers() const noexcept override { return 2; }
 
  private:
   static void spoil(Route& route, const Layer& layer, const PlanContext& context) {
@@ -106,11 +106,14 @@ class Rings final : public Planner {
         if (here % 2 == 0) first.width_mm = width / 2;
         break;
       }
+      case Fault::kDrawsLots:
+        if (context.seed % 2 == 0) std::reverse(route.strokes.begin(), route.strokes.end());
+        break;
+      case Fault::kCountsLayers:
+        if (layer.index % 2 != 0) std::reverse(route.strokes.begin(), route.strokes.end());
+        break;
       case Fault::kStays:
         if (layer.polygons.front().outer.front().x > 100) route.strokes.pop_back();
-        break;
-      case Fault::kComesNotAgain:
-        if (layer.index % 3 == 2) std::reverse(route.strokes.begin(), route.strokes.end());
         break;
       case Fault::kLeavesOut:
         route.strokes.pop_back();
@@ -160,9 +163,10 @@ TEST(Conformance, EveryFaultIsCaughtByItsCheck) {
   EXPECT_EQ(checks_that_fail<Fault::kBeadOutside>(), Names{"beads"});
   EXPECT_TRUE(checks_that_fail<Fault::kRemembers>().contains("pure"));
   EXPECT_TRUE(checks_that_fail<Fault::kDependsOnThread>().contains("pure"));
+  EXPECT_EQ(checks_that_fail<Fault::kDrawsLots>(), Names{"repeats"});
+  EXPECT_EQ(checks_that_fail<Fault::kCountsLayers>(), Names{"repeats"});
   EXPECT_EQ(checks_that_fail<Fault::kStays>(), Names{"moves"});
   EXPECT_EQ(checks_that_fail<Fault::kDeaf>(), Names{"stops"});
-  EXPECT_EQ(checks_that_fail<Fault::kComesNotAgain>(), Names{"again"});
   EXPECT_EQ(checks_that_fail<Fault::kLeavesOut>(), Names{"task"});
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "polygons.hpp"
 #include "routebench/geometry/error.hpp"
 #include "routebench/geometry/layer_io.hpp"
 #include "routebench/geometry/solid.hpp"
@@ -59,104 +60,118 @@ TEST(SliceModel, LayersOfAFileHaveNoFacets) {
   EXPECT_FALSE(slice_model(file, task, {.find_skins = false}, serial_for).layers.empty());
 }
 
-std::vector<Route> routes_of(const std::vector<PlannedLayer>& planned) {
-  std::vector<Route> routes;
-  for (const PlannedLayer& layer : planned) routes.push_back(layer.route);
-  return routes;
+/// A tower with a step, a second island and a roof: runs of equal layers, shorter and longer than
+/// skins reach.
+SlicedModel tower() {
+  const Polygon wide{test::rectangle(0, 0, 20, 12), {}}, narrow{test::rectangle(2, 3, 11, 9), {}};
+  SlicedModel model;
+  const auto add = [&](const Polygons& polygons, int count) {
+    for (int i = 0; i < count; ++i) {
+      const int index = static_cast<int>(model.layers.size());
+      Layer& layer = model.layers.emplace_back();
+      layer.index = index;
+      layer.z_mm = 0.1 + 0.2 * index;
+      layer.height_mm = 0.2;
+      layer.polygons = polygons;
+    }
+  };
+  add({wide}, 9);
+  add({narrow}, 10);
+  add({narrow, {test::rectangle(13, 3, 18, 9), {}}}, 2);
+  add({wide}, 5);
+  return model;
 }
 
-/// Two plates, one on the other, with equal layers in both and skins where they meet.
-PreparedModel two_plates(const Task& task) {
-  PreparedModel model;
-  for (int i = 0; i < 16; ++i) {
-    Layer& layer = model.sliced.layers.emplace_back();
-    layer.index = i;
-    layer.z_mm = (i + 0.5) * task.layer_height_mm;
-    layer.height_mm = task.layer_height_mm;
-    const double side = i < 9 ? 12 : 7;
-    layer.polygons = {{{{0, 0}, {side, 0}, {side, 9}, {0, 9}}, {}},
-                      {{{20, 0}, {26, 0}, {26, 6}, {20, 6}}, {}}};
-  }
+PreparedModel prepared_tower(const Task& task) {
+  PreparedModel model{tower(), {}};
   model.demands = demands_of(model.sliced, task, serial_for);
   return model;
 }
 
 TEST(DemandsOf, EqualLayersGetWhatEachWouldGetAlone) {
-  const Task task;
-  PreparedModel model = two_plates(task);
-  find_solid(model.sliced.layers, task.skin_layers);
-  std::size_t with_skins = 0;
-  for (std::size_t i = 0; i < model.demands.size(); ++i) {
-    const Demand alone = demand_of(model.sliced.layers[i], task);
-    EXPECT_EQ(model.demands[i].inside, alone.inside);
-    EXPECT_EQ(model.demands[i].dense, alone.dense) << "layer " << i;
-    EXPECT_EQ(model.demands[i].sparse, alone.sparse) << "layer " << i;
-    with_skins += alone.dense.empty() ? 0 : 1;
+  for (const double density : {0.2, 1.0}) {
+    Task task;
+    task.density = density;
+    const SlicedModel model = tower();
+    const std::vector<Demand> demands = demands_of(model, task, serial_for);
+    const SkinFinder skins(model.layers, task.skin_layers, serial_for);
+    for (std::size_t i = 0; i < model.layers.size(); ++i) {
+      SCOPED_TRACE(i);
+      EXPECT_EQ(demands[i],
+                demand_of(model.layers[i], task, inside_of(model.layers[i], task),
+                          [&](const Polygons& inside) { return skins.skins_in(inside, i); }));
+    }
   }
-  EXPECT_GT(with_skins, 6U);
-  EXPECT_LT(with_skins, model.demands.size());
 }
 
-TEST(PlanJob, EqualLayersHaveTheRoutesThatPlanningThemWouldGive) {
+TEST(PlanLayers, WhatIsTakenOverIsWhatWouldBePlanned) {
+  const Task task;
+  const PreparedModel model = prepared_tower(task);
+  const std::vector<std::size_t> all = all_layers(model.sliced);
+  // Of every third layer, too: those that follow each other are no neighbours then.
+  std::vector<std::size_t> third;
+  for (std::size_t i = 1; i < all.size(); i += 3) third.push_back(i);
   Registry registry;
   register_builtin_planners(registry);
-  const Task task;
-  const PreparedModel model = two_plates(task);
-  std::vector<std::size_t> chosen = all_layers(model.sliced);
-  chosen.erase(chosen.begin() + 5);
   for (const auto& [name, entry] : registry.entries()) {
-    const SlotSpec slot{name, {}};
-    const bool shell = entry.info.role == PlannerRole::kShell;
-    const Contender contender({.name = name,
-                               .shell = shell ? std::optional(slot) : std::nullopt,
-                               .fill = shell ? std::nullopt : std::optional(slot)},
-                              registry);
-    EXPECT_GT(entry.make({})->period_layers(), 0) << name;
-    EXPECT_EQ(routes_of(plan_job(contender, model, chosen, task, 1, {}, serial_for)),
-              routes_of(plan_layers(contender, model, chosen, task, 1, {}, serial_for)))
-        << name;
+    EXPECT_GT(entry.info.repeats_every, 0) << name;
+    ContenderSpec spec{.name = name, .shell = SlotSpec{"greedy_shell", {}}, .fill = {}};
+    if (entry.info.role == PlannerRole::kFill) spec.fill = SlotSpec{name, {}};
+    const Contender contender(std::move(spec), registry);
+    for (const std::vector<std::size_t>& chosen : {all, third}) {
+      const auto plan = [&](Repeats repeats) {
+        return plan_layers(contender, model, chosen, task, 1, {}, serial_for, repeats);
+      };
+      const std::vector<PlannedLayer> planned = plan(Repeats::kPlan);
+      const std::vector<PlannedLayer> taken = plan(Repeats::kTakeOver);
+      ASSERT_EQ(taken.size(), planned.size());
+      for (std::size_t i = 0; i < planned.size(); ++i) {
+        EXPECT_EQ(taken[i].route, planned[i].route) << name << ", place " << i;
+        EXPECT_EQ(taken[i].kinds, planned[i].kinds) << name << ", place " << i;
+      }
+    }
   }
 }
 
 /// Counts its calls, and says after how many layers they need not be made again.
+template <int every>
 class Counting final : public Planner {
  public:
   struct Params {
-    int period = 0;
-    void bind(ParamBinder& bind) { bind("period", period, {0, 9}, "", "period_layers"); }
+    void bind(ParamBinder&) {}
   };
-  static PlannerInfo info() { return {"counting", PlannerRole::kFill, "counts calls", ""}; }
-  explicit Counting(const Params& params) : params_(params) {}
+  static PlannerInfo info() {
+    return {"counting", PlannerRole::kFill, "counts calls", "", {}, every};
+  }
+  explicit Counting(const Params&) {}
   [[nodiscard]] Route plan(const Layer&, const PlanContext&) const override {
     ++calls;
     return {};
   }
-  [[nodiscard]] int period_layers() const noexcept override { return params_.period; }
   static inline std::size_t calls = 0;
-
- private:
-  Params params_;
 };
 
-TEST(PlanJob, PlansEqualLayersOnce) {
+template <int every>
+std::size_t calls_for_tower(Repeats repeats) {
   Registry registry;
-  registry.add<Counting>();
+  registry.add<Counting<every>>();
   Task task;
   task.density = 1;
-  const PreparedModel model = two_plates(task);
-  const auto calls = [&](std::int64_t period) {
-    const Contender contender(
-        {.name = "counting", .shell = {}, .fill = SlotSpec{"counting", {{"period", period}}}},
-        registry);
-    Counting::calls = 0;
-    static_cast<void>(
-        plan_job(contender, model, all_layers(model.sliced), task, 1, {}, serial_for));
-    return Counting::calls;
-  };
-  // Two islands a layer, and two outlines.
-  EXPECT_EQ(calls(0), 2 * 16U);
-  EXPECT_EQ(calls(1), 2 * 2U);
-  EXPECT_EQ(calls(2), 2 * 2 * 2U);
+  const PreparedModel model = prepared_tower(task);
+  const Contender contender({.name = "counting", .shell = {}, .fill = SlotSpec{"counting", {}}},
+                            registry);
+  Counting<every>::calls = 0;
+  static_cast<void>(
+      plan_layers(contender, model, all_layers(model.sliced), task, 1, {}, serial_for, repeats));
+  return Counting<every>::calls;
+}
+
+TEST(PlanLayers, RegionsOfEqualLayersArePlannedOnce) {
+  // 26 layers, two of them with two islands, of three outlines.
+  EXPECT_EQ(calls_for_tower<1>(Repeats::kPlan), 28U);
+  EXPECT_EQ(calls_for_tower<0>(Repeats::kTakeOver), 28U);
+  EXPECT_EQ(calls_for_tower<1>(Repeats::kTakeOver), 3U);
+  EXPECT_EQ(calls_for_tower<2>(Repeats::kTakeOver), 6U);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #pragma once
 /// Closed rings of whole grid units, as overlays work on them.
 
+#include <algorithm>
 #include <compare>
 #include <cstdint>
 #include <limits>
@@ -40,6 +41,26 @@ struct Winding {
   }
 };
 
+struct GridBox {
+  GridPoint lower;
+  GridPoint upper;
+
+  [[nodiscard]] bool meets(const GridBox& other) const {
+    return lower.x <= other.upper.x && other.lower.x <= upper.x && lower.y <= other.upper.y &&
+           other.lower.y <= upper.y;
+  }
+};
+
+/// Takes at least one point.
+[[nodiscard]] inline GridBox box_of(std::span<const GridPoint> points) {
+  GridBox box{points.front(), points.front()};
+  for (const GridPoint p : points) {
+    box.lower = {std::min(box.lower.x, p.x), std::min(box.lower.y, p.y)};
+    box.upper = {std::max(box.upper.x, p.x), std::max(box.upper.y, p.y)};
+  }
+  return box;
+}
+
 /// Many rings in one array.
 class GridRings {
  public:
@@ -63,6 +84,18 @@ class GridRings {
     windings_.pop_back();
   }
 
+  /// Adds rings of others, but none whose box is clear of the box of what is `near`.
+  void add_near(const GridRings& others, const GridRings& near, Winding winding) {
+    const GridBox box = box_of(near.points_);
+    for (std::uint32_t i = 0; i < others.rings(); ++i) {
+      const std::span<const GridPoint> points = others.ring(i);
+      if (!box.meets(box_of(points))) continue;
+      begin_.push_back(size());
+      windings_.push_back(winding);
+      points_.insert(points_.end(), points.begin(), points.end());
+    }
+  }
+
   [[nodiscard]] std::uint32_t rings() const { return static_cast<std::uint32_t>(begin_.size()); }
   [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(points_.size()); }
   [[nodiscard]] std::uint32_t begin(std::uint32_t ring) const { return begin_[ring]; }
@@ -75,6 +108,11 @@ class GridRings {
   [[nodiscard]] Winding winding(std::uint32_t ring) const { return windings_[ring]; }
   [[nodiscard]] const std::vector<GridPoint>& points() const { return points_; }
   void reserve(std::size_t points) { points_.reserve(points); }
+  /// For so many points more.
+  void make_room(std::size_t points) {
+    const std::size_t needed = points_.size() + points;
+    if (needed > points_.capacity()) points_.reserve(std::max(needed, 2 * points_.capacity()));
+  }
 
  private:
   std::vector<GridPoint> points_;

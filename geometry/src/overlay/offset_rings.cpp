@@ -7,6 +7,8 @@
 #include <span>
 #include <utility>
 
+#include "overlay/monotone_runs.hpp"
+
 namespace routebench::overlay {
 namespace {
 
@@ -180,8 +182,9 @@ class Cleaner {
     std::size_t size = n, at = 0;
     while (size > 2 && settled_[at] == 0) {
       const GridPoint before = ring[previous_[at]], here = ring[at], after = ring[next_[at]];
-      const double strays =
-          std::max(strayed_[previous_[at]], strayed_[at]) + height(before, here, after);
+      double strays = reach_;
+      if (is_low(before, here, after))
+        strays = std::max(strayed_[previous_[at]], strayed_[at]) + height(before, here, after);
       if (strays < reach_) {
         at = remove(at, strays);
         --size;
@@ -232,15 +235,26 @@ class Cleaner {
     return dx * dx + dy * dy <= reach2_;
   }
 
-  /// How far the middle one of three points, in whichever order they lie, is from the line through
-  /// the others.
-  [[nodiscard]] static double height(GridPoint a, GridPoint b, GridPoint c) {
+  /// Whether the height below may be within reach: most are beyond, which takes no root to tell.
+  [[nodiscard]] bool is_low(GridPoint a, GridPoint b, GridPoint c) const {
+    constexpr double kRounding = 1 + 1e-9;
+    const auto twice_area = static_cast<double>(turn(a, b, c));
+    return twice_area * twice_area <= kRounding * reach2_ * longest2(a, b, c);
+  }
+
+  [[nodiscard]] static double longest2(GridPoint a, GridPoint b, GridPoint c) {
     const auto square = [](GridPoint p, GridPoint q) {
       const double dx = p.x - q.x, dy = p.y - q.y;
       return dx * dx + dy * dy;
     };
-    const double longest2 = std::max({square(a, b), square(b, c), square(a, c)});
-    return longest2 > 0 ? static_cast<double>(std::abs(turn(a, b, c))) / std::sqrt(longest2) : 0;
+    return std::max({square(a, b), square(b, c), square(a, c)});
+  }
+
+  /// How far the middle one of three points, in whichever order they lie, is from the line through
+  /// the others.
+  [[nodiscard]] static double height(GridPoint a, GridPoint b, GridPoint c) {
+    const double longest = longest2(a, b, c);
+    return longest > 0 ? static_cast<double>(std::abs(turn(a, b, c))) / std::sqrt(longest) : 0;
   }
 
   double reach_;
@@ -285,7 +299,7 @@ std::optional<std::vector<GridPolygon>> offset_rings(const GridRings& rings, dou
   std::erase_if(*grown, [](const GridPolygon& polygon) { return polygon.outer.empty(); });
   if (!any_moved || grown->empty()) return grown;
   // Cleaning moves edges, so rings may overlap by as much.
-  if (!PlanarEdges(cleaned, moved).any_meets()) return grown;
+  if (meet_nowhere(cleaned) || !PlanarEdges(cleaned, moved).any_meets()) return grown;
   return overlay(cleaned, Inside::kFirstNonZero);
 }
 

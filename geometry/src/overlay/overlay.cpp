@@ -6,11 +6,12 @@
 #include <utility>
 
 #include "overlay/chains.hpp"
+#include "overlay/monotone_runs.hpp"
 
 namespace routebench::overlay {
 namespace {
 
-bool is_inside(Winding w, Inside inside) {
+bool is_inside(Winding w, Inside inside, std::int32_t sets) {
   switch (inside) {
     case Inside::kFirstPositive:
       return w.first > 0;
@@ -24,6 +25,8 @@ bool is_inside(Winding w, Inside inside) {
       return w.first != 0 && w.second != 0;
     case Inside::kFirstOnly:
       return w.first != 0 && w.second == 0;
+    case Inside::kNotInAll:
+      return w.first != 0 && w.second < sets;
   }
   return false;
 }
@@ -64,15 +67,15 @@ double twice_area(const GridRing& ring) {
 /// Collects the boundaries of what is inside, face by face.
 class FaceTracer {
  public:
-  FaceTracer(const PlanarEdges& planar, const ChainGraph& graph, Inside inside)
+  FaceTracer(const PlanarEdges& planar, const ChainGraph& graph, Inside inside, std::int32_t sets)
       : planar_(planar), graph_(graph) {
     const std::vector<Chain>& chains = graph.chains();
     way_.resize(chains.size(), Way::kNone);
     boundary_of_.resize(chains.size(), kNone);
     for (std::size_t c = 0; c < chains.size(); ++c) {
       if (chains[c].is_copy) continue;
-      const bool left = is_inside(chains[c].left(), inside);
-      if (left != is_inside(chains[c].right, inside)) way_[c] = left ? Way::kOn : Way::kBack;
+      const bool left = is_inside(chains[c].left(), inside, sets);
+      if (left != is_inside(chains[c].right, inside, sets)) way_[c] = left ? Way::kOn : Way::kBack;
     }
   }
 
@@ -206,18 +209,124 @@ class FaceTracer {
   std::vector<std::uint32_t> place_;  // nodes: where the path leaves them
 };
 
+/// The faces of rings that do not meet: every ring is on one side of all others, so one point of it
+/// tells how often they run round it.
+class ApartRings {
+ public:
+  explicit ApartRings(const GridRings& rings) : rings_(rings) {}
+
+  /// Each ring is looked at with each, so more would take longer than to cut them.
+  static constexpr std::uint32_t kMostRings = 24;
+
+  /// Nothing if that takes too long even so.
+  std::optional<std::vector<GridPolygon>> faces(Inside inside) {
+    for (std::uint32_t i = 0; i < rings_.rings(); ++i) places_.push_back(place_of(i));
+    std::vector<GridPolygon> polygons;
+    std::vector<Hole> holes;
+    std::vector<std::uint32_t> polygon_of(rings_.rings(), kNone);
+    for (std::uint32_t i = 0; i < rings_.rings(); ++i) {
+      Place& place = places_[i];
+      Winding outside;
+      for (std::uint32_t other = 0; other < rings_.rings(); ++other) {
+        if (other == i || !lies_in(place.leftmost, other)) continue;
+        ++place.depth;
+        outside = outside + places_[other].within;
+      }
+      if (steps_ > kStepsPerPoint * rings_.size()) return std::nullopt;
+      const bool is_outer = is_inside(outside + place.within, inside, 1);
+      if (is_outer == is_inside(outside, inside, 1)) continue;
+      GridRing ring = ring_of(i, is_outer);
+      if (ring.empty()) continue;
+      if (is_outer) {
+        polygon_of[i] = static_cast<std::uint32_t>(polygons.size());
+        polygons.push_back({std::move(ring), {}});
+      } else {
+        holes.push_back({i, std::move(ring)});
+      }
+    }
+    for (Hole& hole : holes) {
+      // Of the outer rings about it the innermost.
+      std::uint32_t best = kNone;
+      for (std::uint32_t outer = 0; outer < rings_.rings(); ++outer)
+        if (polygon_of[outer] != kNone &&
+            (best == kNone || places_[outer].depth > places_[best].depth) &&
+            lies_in(places_[hole.ring].leftmost, outer))
+          best = outer;
+      if (best != kNone) polygons[polygon_of[best]].holes.push_back(std::move(hole.points));
+    }
+    return polygons;
+  }
+
+ private:
+  static constexpr std::size_t kStepsPerPoint = 32;
+
+  struct Place {
+    GridPoint leftmost;  ///< of several the lowest
+    GridBox box;
+    bool turns_left = false;
+    Winding within;  ///< what the ring adds to places inside it
+    int depth = 0;   ///< rings about it
+  };
+  struct Hole {
+    std::uint32_t ring;
+    GridRing points;
+  };
+
+  [[nodiscard]] Place place_of(std::uint32_t ring) const {
+    const std::span<const GridPoint> points = rings_.ring(ring);
+    const auto least =
+        static_cast<std::size_t>(std::min_element(points.begin(), points.end()) - points.begin());
+    const GridPoint before = points[least == 0 ? points.size() - 1 : least - 1];
+    const GridPoint after = points[least + 1 == points.size() ? 0 : least + 1];
+    Place place{points[least], box_of(points), turn(before, points[least], after) > 0, {}, 0};
+    place.within = place.turns_left ? rings_.winding(ring) : Winding{} - rings_.winding(ring);
+    return place;
+  }
+
+  /// By a ray to the left, infinitesimally above the point.
+  bool lies_in(GridPoint p, std::uint32_t ring) {
+    const GridBox& box = places_[ring].box;
+    if (p.x < box.lower.x || p.x > box.upper.x || p.y < box.lower.y || p.y > box.upper.y)
+      return false;
+    const std::span<const GridPoint> points = rings_.ring(ring);
+    steps_ += points.size();
+    bool is_in = false;
+    GridPoint a = points.back();
+    for (const GridPoint b : points) {
+      if ((a.y <= p.y) != (b.y <= p.y)) is_in ^= a.y < b.y ? turn(a, b, p) < 0 : turn(b, a, p) < 0;
+      a = b;
+    }
+    return is_in;
+  }
+
+  /// What is inside lies to the left of the ring then.
+  [[nodiscard]] GridRing ring_of(std::uint32_t ring, bool is_outer) const {
+    const std::span<const GridPoint> points = rings_.ring(ring);
+    GridRing made(points.begin(), points.end());
+    if (places_[ring].turns_left != is_outer) std::reverse(made.begin() + 1, made.end());
+    drop_straight_points(made);
+    return made;
+  }
+
+  const GridRings& rings_;
+  std::vector<Place> places_;
+  std::size_t steps_ = 0;
+};
+
 }  // namespace
 
-std::optional<std::vector<GridPolygon>> overlay(const GridRings& rings, Inside inside) {
+std::optional<std::vector<GridPolygon>> overlay(const GridRings& rings, Inside inside,
+                                                std::int32_t sets) {
   if (rings.rings() == 0) return std::vector<GridPolygon>{};
+  // What is offset or cut from a solid seldom meets itself; of two areas the outlines mostly do.
+  const bool is_one_set = inside == Inside::kFirstPositive || inside == Inside::kFirstNonZero ||
+                          inside == Inside::kFirstOdd;
+  if (is_one_set && rings.rings() <= ApartRings::kMostRings && meet_nowhere(rings))
+    if (auto faces = ApartRings(rings).faces(inside)) return faces;
   const PlanarEdges planar(rings);
   if (!planar.are_planar()) return std::nullopt;
-  return faces_of(planar, inside);
-}
-
-std::vector<GridPolygon> faces_of(const PlanarEdges& planar, Inside inside) {
   const ChainGraph graph(planar);
-  return FaceTracer(planar, graph, inside).run();
+  return FaceTracer(planar, graph, inside, sets).run();
 }
 
 }  // namespace routebench::overlay

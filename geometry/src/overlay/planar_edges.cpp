@@ -63,7 +63,16 @@ void PlanarEdges::link() {
       next_[i] = i + 1 < end ? i + 1 : begin;
       set_box(i);
     }
-    for (std::uint32_t i = begin; i < end; ++i) look_at_fold(i, next_[i]);
+    // A ring turns back only where its direction does.
+    std::uint32_t before = end - 1;
+    std::int64_t x = points_[begin].x - points_[before].x, y = points_[begin].y - points_[before].y;
+    for (std::uint32_t i = begin; i < end; before = i++) {
+      const std::int64_t dx = points_[next_[i]].x - points_[i].x;
+      const std::int64_t dy = points_[next_[i]].y - points_[i].y;
+      if (x * dx + y * dy < 0) look_at_fold(before, i);
+      x = dx;
+      y = dy;
+    }
   }
 }
 

@@ -21,15 +21,19 @@ class ToGrid {
   explicit ToGrid(double margin_mm = 0) : most_units_(kMaxUnits - margin_mm * kGridUnitsPerMm) {}
 
   [[nodiscard]] bool add(const Polygons& polygons, Winding winding) {
-    return std::all_of(polygons.begin(), polygons.end(), [&](const Polygon& polygon) {
-      return add(polygon.outer, winding) &&
-             std::all_of(polygon.holes.begin(), polygon.holes.end(),
-                         [&](const Ring& hole) { return add(hole, winding); });
-    });
+    return std::all_of(polygons.begin(), polygons.end(),
+                       [&](const Polygon& polygon) { return add(polygon, winding); });
+  }
+
+  [[nodiscard]] bool add(const Polygon& polygon, Winding winding) {
+    return add(polygon.outer, winding) &&
+           std::all_of(polygon.holes.begin(), polygon.holes.end(),
+                       [&](const Ring& hole) { return add(hole, winding); });
   }
 
   [[nodiscard]] bool add(const Ring& ring, Winding winding) {
     rings_.begin_ring(winding);
+    rings_.make_room(ring.size());
     for (const Point2 p : ring) {
       const double x = p.x * kGridUnitsPerMm, y = p.y * kGridUnitsPerMm;
       if (!(std::abs(x) < most_units_ && std::abs(y) < most_units_)) return false;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -75,12 +76,47 @@ struct SkinFinder::Impl {
   std::vector<std::size_t> first;  ///< see first_of_equal_layers
   std::vector<Index> indices;      ///< of those layers
 
-  static Index index_of(const Polygons& polygons) {
+  static Index index_of(std::span<const Polygon> polygons) {
     overlay::ToGrid grid;
-    if (polygons.empty() || !grid.add(polygons, {1, 0})) return std::nullopt;
+    for (const Polygon& polygon : polygons)
+      if (!grid.add(polygon, {1, 0})) return std::nullopt;
     overlay::GridRings rings = grid.take();
     if (rings.rings() == 0) return std::nullopt;
     return overlay::RingIndex(std::move(rings));
+  }
+
+  /// Adds what of a polygon any of the layers leaves open; false if some do not fit on the grid.
+  [[nodiscard]] bool add_skins(const Polygon& polygon, const std::vector<std::size_t>& around,
+                               std::vector<overlay::GridPolygon>& skins) const {
+    const Index own = index_of({&polygon, 1});
+    if (!own) return false;
+    // All layers are cut at once, and only those that do not hold the polygon anyhow.
+    std::vector<std::size_t> needed;
+    for (const std::size_t other : around) {
+      const Index& index = indices[other];
+      if (!index && !layers[other].polygons.empty()) return false;
+      if (index && index->holds_all_of(*own)) continue;
+      if (std::none_of(needed.begin(), needed.end(), [&](std::size_t known) {
+            return layers[known].polygons == layers[other].polygons;
+          }))
+        needed.push_back(other);
+    }
+    if (needed.empty()) return true;
+    overlay::GridRings rings = own->rings();
+    for (const std::size_t other : needed)
+      if (indices[other]) rings.add_near(indices[other]->rings(), own->rings(), {0, 1});
+    const auto faces = overlay::overlay(rings, overlay::Inside::kNotInAll,
+                                        static_cast<std::int32_t>(needed.size()));
+    if (!faces) return false;
+    skins.insert(skins.end(), faces->begin(), faces->end());
+    return true;
+  }
+
+  [[nodiscard]] Polygons skins_by_clipper(const Polygons& region,
+                                          const std::vector<std::size_t>& around) const {
+    Polygons common = region;
+    for (const std::size_t other : around) common = intersect(common, layers[other].polygons);
+    return rest(region, common);
   }
 };
 
@@ -103,23 +139,19 @@ Polygons SkinFinder::skins_in(const Polygons& region, std::size_t layer) const {
   const std::size_t reach = impl_->reach, count = impl_->layers.size();
   if (reach == 0 || region.empty()) return {};
   if (layer < reach || layer + reach >= count) return region;
+  // The farthest first: what they leave is mostly held by the nearer ones. A layer that equals the
+  // region's own leaves nothing open.
   const std::vector<std::size_t>& first = impl_->first;
-  if (first[layer - reach] == first[layer + reach]) return {};
-  Impl::Index own = Impl::index_of(region);
-  Polygons common = region;
-  const auto cut_by = [&](std::size_t other) {
-    if (first[other] == first[layer]) return;  // the region lies in its own layer
-    const Impl::Index& index = impl_->indices[first[other]];
-    if (common.empty() || (own && index && index->holds_all_of(*own))) return;
-    common = intersect(common, impl_->layers[other].polygons);
-    own = Impl::index_of(common);
-  };
-  // The farthest first: what they leave is mostly held by the nearer ones.
-  for (std::size_t distance = reach; distance > 0; --distance) {
-    cut_by(layer - distance);
-    cut_by(layer + distance);
-  }
-  return rest(region, common);
+  std::vector<std::size_t> around;
+  for (std::size_t distance = reach; distance > 0; --distance)
+    for (const std::size_t other : {first[layer - distance], first[layer + distance]})
+      if (other != first[layer] && std::find(around.begin(), around.end(), other) == around.end())
+        around.push_back(other);
+  if (around.empty()) return {};
+  std::vector<overlay::GridPolygon> skins;
+  for (const Polygon& polygon : region)
+    if (!impl_->add_skins(polygon, around, skins)) return impl_->skins_by_clipper(region, around);
+  return overlay::to_polygons(skins);
 }
 
 void find_solid(std::vector<Layer>& layers, int skin_layers, const ParallelFor& parallel_for) {

@@ -134,9 +134,9 @@ class Plan {
     std::string reason;
     try {
       // Times are looked at only together with scores.
-      planned_ = (arguments_.no_judge ? plan_job : plan_layers)(std::get<Contender>(*source_),
-                                                                model_, chosen_, judge_.task(),
-                                                                arguments_.seed, {}, parallel_for_);
+      planned_ = plan_layers(std::get<Contender>(*source_), model_, chosen_, judge_.task(),
+                             arguments_.seed, {}, parallel_for_,
+                             arguments_.no_judge ? Repeats::kTakeOver : Repeats::kPlan);
     } catch (const PlannerDied& death) {
       outcome = Outcome::kCrashed;
       reason = death.what();

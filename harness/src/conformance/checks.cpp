@@ -118,6 +118,7 @@ bool leaves_as_published(const PlannerInfo& info, const ParamSet& params) {
 
 /// One way of planning a trial layer.
 struct Trial {
+  const PlannerInfo& info;
   const Planner& planner;
   const Layer& layer;
   const PlanContext& context;
@@ -139,7 +140,7 @@ std::optional<Breach> at_all_corners(const Registry& registry, const std::string
     if (only_inside && leaves_as_published(entry.info, params)) continue;
     const auto planner = entry.make(params);
     for (const PlanContext& context : contexts(entry.info.role))
-      if (std::optional<Seen> seen = look(Trial{*planner, trial.layer, context}))
+      if (std::optional<Seen> seen = look(Trial{entry.info, *planner, trial.layer, context}))
         return Breach{text_of(params), std::move(seen->complaint), std::move(seen->route)};
   }
   return std::nullopt;
@@ -225,6 +226,21 @@ std::optional<Seen> impurity(const Trial& trial) {
   return std::nullopt;
 }
 
+std::optional<Seen> unrepeated(const Trial& trial) {
+  if (trial.info.repeats_every == 0) return std::nullopt;
+  Layer above = trial.layer;
+  above.index += trial.info.repeats_every;
+  above.z_mm += trial.info.repeats_every * above.height_mm;
+  PlanContext context = trial.context;
+  context.seed += 1;
+  Route route = trial.planner.plan(above, context);
+  if (route == trial.planner.plan(trial.layer, trial.context)) return std::nullopt;
+  return Seen{
+      "an equal layer, as many above as it is said to repeat itself after, got another "
+      "route",
+      std::move(route)};
+}
+
 std::optional<Seen> unmoved(const Trial& trial) {
   const Point2 by{snap(137.3), snap(-61.7)};
   PlanContext context = trial.context;
@@ -234,27 +250,6 @@ std::optional<Seen> unmoved(const Trial& trial) {
   if (there == moved(trial.planner.plan(trial.layer, trial.context), by)) return std::nullopt;
   return Seen{"layer, start and origin were moved, and the route did not just move with them",
               moved(std::move(there), Point2{-by.x, -by.y})};
-}
-
-std::optional<Seen> not_again(const Trial& trial) {
-  const int period = trial.planner.period_layers();
-  if (period == 0) return std::nullopt;
-  for (int first = 0; first < period; ++first) {
-    Layer layer = trial.layer;
-    layer.index = first;
-    PlanContext context = trial.context;
-    const Route route = trial.planner.plan(layer, context);
-    layer.index += period;
-    layer.z_mm += period * layer.height_mm;
-    ++context.seed;
-    Route again = trial.planner.plan(layer, context);
-    if (again != route)
-      return Seen{"it said that routes come again after " + std::to_string(period) +
-                      " layers, but those of layers " + std::to_string(first) + " and " +
-                      std::to_string(layer.index) + " differ",
-                  std::move(again)};
-  }
-  return std::nullopt;
 }
 
 std::optional<Seen> going_on(const Trial& trial) {
@@ -333,7 +328,7 @@ ConformanceCheck of_defaults(std::string name, std::string promise,
             const Registry::Entry& entry = registry.at(planner);
             const auto made = entry.make({});
             for (const PlanContext& context : contexts(entry.info.role))
-              if (std::optional<Seen> seen = look(Trial{*made, layer.layer, context}))
+              if (std::optional<Seen> seen = look(Trial{entry.info, *made, layer.layer, context}))
                 return Breach{"defaults", std::move(seen->complaint), std::move(seen->route)};
             return std::nullopt;
           }};
@@ -348,8 +343,7 @@ const std::vector<ConformanceCheck>& conformance_checks() {
       of_defaults("beads", "with default parameters beads stay inside the polygons", bead_outside),
       everywhere("pure", "equal arguments give an equal route, after other calls and on any thread",
                  impurity),
-      everywhere("again", "on equal layers routes come again after as many as period_layers says",
-                 not_again),
+      everywhere("repeats", "equal layers have equal routes as often as it is said", unrepeated),
       everywhere("moves", "the route moves with layer, start and origin", unmoved),
       everywhere("stops", "planning ends soon when it is asked to", going_on),
       {"task", "with default parameters the gate passes layers that have room", task_not_done}};

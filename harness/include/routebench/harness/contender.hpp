@@ -105,6 +105,8 @@ class Contender {
   ContenderSpec spec_;
   ParamSet shell_params_;
   ParamSet fill_params_;
+  int shell_repeats_every_ = 0;  ///< see PlannerInfo
+  int fill_repeats_every_ = 0;
   std::unique_ptr<const Planner> shell_;
   std::unique_ptr<const Planner> fill_;
 };

@@ -15,6 +15,7 @@ struct Demand {
   Polygons inside;   ///< what the walls leave: outline shrunk by perimeters x spacing
   Polygons dense;    ///< of the inside: skins, to be filled at density 1
   Polygons sparse;   ///< of the inside: the rest, to be filled at task.density
+  friend bool operator==(const Demand&, const Demand&) = default;
 };
 
 /// Cuts a layer. A skin narrower than a line is not a place that can be filled for itself and

@@ -120,22 +120,20 @@ struct PreparedModel {
 /// nothing out.
 [[nodiscard]] std::vector<std::size_t> all_layers(const SlicedModel& sliced);
 
+/// Whether each region is planned for itself, or takes over the route of one that came in an equal
+/// layer, where its planner promises that its own would be equal (see PlannerInfo::repeats_every).
+enum class Repeats { kPlan, kTakeOver };
+
 /// Plans the chosen layers. Times are those of each call to plan() alone; wall times are to be
-/// trusted only if no other thread competes, that is with serial_for.
+/// trusted only if no other thread competes, that is with serial_for; what is taken over has none.
 ///
 /// Takes   places in the model's layers, ascending.
 /// Returns one planned layer for each of them.
 /// Throws  what Contender::plan throws, of the lowest such layer.
 [[nodiscard]] std::vector<PlannedLayer> plan_layers(
     const Contender& contender, const PreparedModel& model, std::span<const std::size_t> chosen,
-    const Task& task, std::uint64_t seed, std::stop_token stop, const ParallelFor& parallel_for);
-
-/// Plans the chosen layers of a whole job, in which no one asks how long each took: regions that
-/// come again on equal layers are planned once (see Planner::period_layers).
-/// Takes, returns and throws what plan_layers does, but for times, which are those spent.
-[[nodiscard]] std::vector<PlannedLayer> plan_job(
-    const Contender& contender, const PreparedModel& model, std::span<const std::size_t> chosen,
-    const Task& task, std::uint64_t seed, std::stop_token stop, const ParallelFor& parallel_for);
+    const Task& task, std::uint64_t seed, std::stop_token stop, const ParallelFor& parallel_for,
+    Repeats repeats = Repeats::kPlan);
 
 /// A cell's scores.
 struct JudgedCell {

@@ -60,13 +60,6 @@ class Planner {
   ///         route, on any thread, in any order. Coordinates lie on the grid.
   /// Throws  Error{kStopped} when asked to stop.
   [[nodiscard]] virtual Route plan(const Layer& layer, const PlanContext& context) const = 0;
-
-  /// After how many layers routes are the same again where layers are: with equal polygons and
-  /// heights, and equal contexts but for the seed, routes are equal if the layers' indices differ
-  /// by a multiple of it. A whole job then plans such layers once. 0, the default, promises
-  /// nothing; a planner that takes nothing from index, z and seed says 1, one that turns its lines
-  /// from layer to layer 2.
-  [[nodiscard]] virtual int period_layers() const noexcept { return 0; }
 };
 
 }  // namespace routebench

@@ -35,6 +35,9 @@ struct PlannerInfo {
   /// With any of these the planner does as its paper did and may leave the polygons, which the
   /// judge then calls off task; the conformance test leaves them out.
   std::vector<Setting> may_leave = {};
+  /// A promise, kept at any parameters: layers with equal polygons and heights have equal routes if
+  /// their indices differ by a multiple of this, whatever the seed. 0 promises nothing.
+  int repeats_every = 0;
 };
 
 /// What a class must have to be registered.
