@@ -14,8 +14,8 @@
 namespace routebench {
 namespace {
 
-// Of 1 + the cosine of a corner's turn: 135 degrees. Beyond it there may be room for something.
-constexpr double kSharpest = 0.29;
+// Of 1 + the cosine of a corner's turn: 120 degrees. Offsets cut sharper corners off.
+constexpr double kSharpest = 0.5;
 // The inset of a corner begins at half the tangent of its turn from it, which is about this much.
 constexpr double kCornerDistances = 2;
 constexpr std::size_t kLookAhead = 3;  // edges: a few small ones may lead away at first
