@@ -14,8 +14,8 @@
 namespace routebench {
 namespace {
 
-// Of 1 + the cosine of a corner's turn: 135 degrees. Beyond it there may be room for something.
-constexpr double kSharpest = 0.29;
+// Of 1 + the cosine of a corner's turn: 120 degrees. Offsets cut sharper corners off.
+constexpr double kSharpest = 0.5;
 // The inset of a corner begins at half the tangent of its turn from it, which is about this much.
 constexpr double kCornerDistances = 2;
 constexpr std::size_t kLookAhead = 3;  // edges: a few small ones may lead away at first
@@ -47,6 +47,11 @@ class Follower {
   }
 
   [[nodiscard]] bool is_somewhere() const { return ring_ != nullptr; }
+
+  /// Whether the edge where it is comes as near to p as that.
+  [[nodiscard]] bool reaches(Point2 p, double within_squared) const {
+    return ring_ != nullptr && squared_to(p, edge_) <= within_squared;
+  }
 
   /// Moves on along the ring as long as that leads nearer to p; the squared distance there.
   double follow(Point2 p) {
@@ -122,9 +127,13 @@ class RingProof {
       // Between corners too, as near to them as a stub is long that has room for a line.
       const int pieces =
           static_cast<int>(distance(corner, next) / ((distance_mm_ + slack_mm_) / 2)) + 1;
+      const auto place = [&](int k) { return lerp(corner, next, static_cast<double>(k) / pieces); };
       for (int k = 1; k < pieces; ++k) {
-        const Point2 p = lerp(corner, next, static_cast<double>(k) / pieces);
-        if (!visit(p, has_inset_beside(p, i))) return false;
+        if (!visit(place(k), has_inset_beside(place(k), i))) return false;
+        // What is beside one edge of the inset at two places is so between them.
+        if (inset_.reaches(place(k), squared_reach(1)) &&
+            inset_.reaches(place(pieces - 1), squared_reach(1)))
+          break;
       }
     }
     return true;
@@ -136,13 +145,21 @@ class RingProof {
 
   /// Asks for a place on edge i, from its first point on.
   bool has_inset_beside(Point2 p, std::size_t i) {
-    const auto squared = [this](double mm) { return (mm + slack_mm_) * (mm + slack_mm_); };
-    double nearest = std::numeric_limits<double>::infinity();
-    if (searches_ > 0 && inset_.is_somewhere()) nearest = inset_.follow(p);
-    if (nearest <= squared(distance_mm_)) return true;
-    const double reach = squared(distance_mm_ * corner_reach(p, i));
+    const bool is_placed = searches_ > 0;
+    if (is_placed && inset_.reaches(p, squared_reach(1))) return true;
+    const double nearest = is_placed && inset_.is_somewhere()
+                               ? inset_.follow(p)
+                               : std::numeric_limits<double>::infinity();
+    if (nearest <= squared_reach(1)) return true;
+    const double reach = squared_reach(corner_reach(p, i));
     if (nearest <= reach) return true;
     return ++searches_ <= kSearches && inset_.search(p, reach);
+  }
+
+  /// How far away the inset may be if it may be so many times the distance away.
+  [[nodiscard]] double squared_reach(double times) const {
+    const double mm = times * distance_mm_ + slack_mm_;
+    return mm * mm;
   }
 
   /// How many times the distance the inset may be away from a place on edge i: 1, but more at a

@@ -89,7 +89,6 @@ Polygons gaps_before(const Polygons& polygons, const std::vector<Polygons>& regi
   const Polygons& region = wall < regions.size() ? regions[wall] : none;
   // Where nothing is narrow, the wall's place grows back to where it came from.
   const double step_mm = wall == 0 ? context.line_width_mm / 2 : context.spacing_mm;
-  if (area_mm2(before) - grown_area_mm2(region, step_mm) < least_stroke_mm2(context)) return {};
   const double reach_mm = context.spacing_mm / 2, margin_mm = kMarginSpacings * context.spacing_mm;
   Polygons gaps;
   for (const Box2& box : doubtful_places(region, before, step_mm, kStubMm, margin_mm)) {
