@@ -19,9 +19,9 @@ namespace {
 /// Heights that were written as text and read back may differ by this much.
 constexpr double kHeightToleranceMm = 1e-6;
 
-/// Contours may be moved by this to have fewer points: far less than a printer can place, and a
-/// fifth of what offsets take for noise.
-constexpr double kStraightMm = 0.001;
+/// Contours may be moved by this to have fewer points: less than a printer can place, and no more
+/// than offsets take for noise.
+constexpr double kStraightMm = 0.005;
 
 bool is_layer_file(const std::string& spec) {
   std::string extension = std::filesystem::path(spec).extension().string();
