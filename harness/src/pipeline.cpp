@@ -19,10 +19,6 @@ namespace {
 /// Heights that were written as text and read back may differ by this much.
 constexpr double kHeightToleranceMm = 1e-6;
 
-/// Contours may be moved by this to have fewer points: less than a printer can place, and no more
-/// than offsets take for noise.
-constexpr double kStraightMm = 0.005;
-
 bool is_layer_file(const std::string& spec) {
   std::string extension = std::filesystem::path(spec).extension().string();
   for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
@@ -66,11 +62,7 @@ void mark_solid(std::vector<Layer>& layers, const Task& task, const Mesh* mesh, 
 SlicedModel slice_mesh_model(const std::string& spec, const Task& task,
                              const SliceModelOptions& options, const ParallelFor& parallel_for) {
   Model model = load_model(spec, {.repair = options.repair}, parallel_for);
-  const SliceOptions slicing{.layer_height_mm = task.layer_height_mm,
-                             .method = options.method,
-                             .repair = options.repair,
-                             .straight_mm = kStraightMm,
-                             .cell_mm = options.cell_mm.value_or(task.line_width_mm)};
+  const SliceOptions slicing = slicing_for(task, options);
   if (options.method == SliceMethod::kVoxel && options.on_container)
     options.on_container(voxel_container(model.mesh, slicing, spec));
   Slices slices = slice_mesh(model.mesh, slicing, spec, parallel_for);
@@ -125,6 +117,16 @@ Point2 lower_corner(const std::vector<Layer>& layers) {
 }
 
 }  // namespace
+
+SliceOptions slicing_for(const Task& task, const SliceModelOptions& options) {
+  // Less than a printer can place, and no more than offsets take for noise.
+  constexpr double kStraightMm = 0.005;
+  return {.layer_height_mm = task.layer_height_mm,
+          .method = options.method,
+          .repair = options.repair,
+          .straight_mm = kStraightMm,
+          .cell_mm = options.cell_mm.value_or(task.line_width_mm)};
+}
 
 SlicedModel slice_model(const std::string& spec, const Task& task, const SliceModelOptions& options,
                         const ParallelFor& parallel_for) {

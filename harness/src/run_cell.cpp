@@ -234,10 +234,7 @@ Cut cut(SliceMethod method, const CellWork& work, ChildProgress& progress) {
   if (!sliced.mesh)
     throw Error(ErrorKind::kBadInput, "nothing to cut: the model is a file of layers");
   const Model model = load_model(sliced.spec, {.repair = work.repair});
-  const SliceOptions options{.layer_height_mm = task.layer_height_mm,
-                             .method = method,
-                             .repair = work.repair,
-                             .cell_mm = task.line_width_mm};
+  const SliceOptions options = slicing_for(task, {.method = method, .repair = work.repair});
   Cut made;
   PlanTime time;
   const auto slice = [&] { made.layers = slice_mesh(model.mesh, options, sliced.spec).layers; };

@@ -216,7 +216,7 @@ Lattice::Way Lattice::find_way(std::uint32_t a, std::uint32_t b) const {
 }
 
 Lattice::Way Lattice::way(std::uint32_t a, std::uint32_t b) const {
-  const auto [low, high] = std::minmax(a, b);
+  const std::uint32_t low = std::min(a, b), high = std::max(a, b);
   const auto remembered = [&](std::uint8_t joined, std::uint8_t bent) {
     if ((joined_[low] & joined) == 0) return Way::kBlocked;
     return (joined_[low] & bent) == 0 ? Way::kStraight : Way::kBent;

@@ -46,6 +46,7 @@ struct AtHand {
   std::uint32_t i = 1;
   int count = 2;
   double mm = 2, from_mm = 1, to_mm = 30, width_mm = 0.4, widest_mm = 0.6, step_mm = 0.4;
+  double reach_mm = 0.2, near_mm = 0.27;
 
   AtHand() {
     context.perimeters = 2;

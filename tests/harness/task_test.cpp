@@ -120,7 +120,8 @@ TEST(Task, ValuesThatCannotBeMeantAreRefusedByName) {
   const std::string policy = printer_refusal("retract_policy", "lenght");
   EXPECT_TRUE(contains(policy, "length, length_and_crossing, manhattan")) << policy;
   EXPECT_TRUE(contains(policy, "did you mean 'length'")) << policy;
-  EXPECT_TRUE(contains(printer_refusal("flavour", "5D"), "is not one of marlin, klipper, reprap, ultigcode"));
+  EXPECT_TRUE(contains(printer_refusal("flavour", "5D"),
+                       "is not one of marlin, klipper, reprap, ultigcode"));
   EXPECT_TRUE(contains(printer_refusal("accel_mm_s2", "0"), "accel_mm_s2 = '0'"));
 }
 

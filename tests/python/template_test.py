@@ -22,7 +22,8 @@ class TemplateTest(FolderTest):
         self.assertNotIn("@", source)
         self.folder = self.folder / "mine"
         checked = self.call(*commands[0].split())
-        self.assertEqual(checked.stdout.count("\npass  "), 7)
+        self.assertEqual(checked.stdout.count("\npass  "), 8)
+        self.assertNotIn("\nFAIL", checked.stdout)
         ran = self.call(*commands[1].split())
         self.assertIn("18 cells: 18 valid", ran.stdout)
 

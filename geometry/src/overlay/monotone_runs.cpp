@@ -37,8 +37,8 @@ bool goes_on(GridPoint a, GridPoint b, int& x_way, int& y_way) {
 }
 
 bool turns_back(GridPoint a, GridPoint b, GridPoint c) {
-  return turn(a, b, c) == 0 &&
-         std::int64_t{a.x - b.x} * (c.x - b.x) + std::int64_t{a.y - b.y} * (c.y - b.y) > 0;
+  const std::int64_t x = b.x, y = b.y;
+  return turn(a, b, c) == 0 && (a.x - x) * (c.x - x) + (a.y - y) * (c.y - y) > 0;
 }
 
 class Search {

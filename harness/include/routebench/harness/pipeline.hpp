@@ -91,6 +91,9 @@ struct SlicedModel {
   Point2 origin;  ///< lower corner of all layers together: where patterns are anchored
 };
 
+/// How a mesh is cut into the layers that all contenders of a task get.
+[[nodiscard]] SliceOptions slicing_for(const Task& task, const SliceModelOptions& options);
+
 /// Reads or makes a model, cuts it at the task's layer height and finds its skins.
 ///
 /// Takes  a model spec (see load_model) or the path of a .wkt file of layers (see read_wkt), whose
