@@ -153,7 +153,8 @@ TEST_F(ScoreCommand, AlsoUnderOtherTasksOrdersPoliciesAndFlavours) {
 }
 
 TEST_F(ScoreCommand, TheRoutesOfEveryPlannerScoreTheSame) {
-  for (const json& planner : call({"planners", "--json"}).json()["planners"]) {
+  const json known = call({"planners", "--json"}).json();
+  for (const json& planner : known["planners"]) {
     const std::string name = planner["name"];
     const bool shell = planner["role"] == "shell";
     const ProgramRun run = call(
