@@ -59,6 +59,9 @@ double metric(const StoredCell& cell, const char* name) {
 }
 
 TEST_F(SlicerContender, OurOwnProgramAsASlicerScoresAsItsPlanners) {
+#if defined(__SANITIZE_ADDRESS__)
+  GTEST_SKIP() << "the sanitizer ends a program of ours whose memory is limited";
+#endif
   const std::string planners =
       "[[contender]]\nname = \"planners\"\nshell = { planner = \"greedy_shell\" }\n"
       "fill = { planner = \"rectilinear\" }\n";
@@ -140,6 +143,9 @@ TEST_F(SlicerContender, WhatGoesWrongCostsItsCellAlone) {
 }
 
 TEST_F(SlicerContender, LayersOfItsOwnMakeItOffTask) {
+#if defined(__SANITIZE_ADDRESS__)
+  GTEST_SKIP() << "the sanitizer ends a program of ours whose memory is limited";
+#endif
   const ProgramRun done = run(
       {{"higher", command(std::string(ROUTEBENCH_PROGRAM) +
                           " plan shape:box?x=10&y=10&z=3 --shell greedy_shell --fill "
