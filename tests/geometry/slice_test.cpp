@@ -11,6 +11,7 @@
 #include "routebench/geometry/grid.hpp"
 #include "routebench/geometry/model.hpp"
 #include "routebench/geometry/region.hpp"
+#include "slicing/slivers.hpp"
 
 namespace routebench {
 namespace {
@@ -137,6 +138,22 @@ TEST(SliceMesh, UprightWallsHaveTheSameContourInEveryLayer) {
     ASSERT_GT(layers.size(), 3u);
     for (const Layer& layer : layers) EXPECT_EQ(layer.polygons, layers[0].polygons);
   }
+}
+
+TEST(Slivers, SpikesAndNotchesWithoutWidthGoAndNothingElse) {
+  // Cut at any place along their sides, on a square and with a corner of their own beside them.
+  const Ring square{{10, 0}, {10, 10}, {0, 10}, {0, 0}};
+  const Ring notched{{10, 0},     {10, 4.9999}, {7, 4.9999}, {4, 5},  {6, 5.0001},
+                     {9, 5.0001}, {10, 5.0001}, {10, 10},    {0, 10}, {0, 7},
+                     {-3, 7},     {-1, 7.0002}, {0, 7.0002}, {0, 0}};
+  const Ring clean = slicing::without_spikes(notched);
+  EXPECT_NEAR(signed_area_mm2(clean), 100, 1e-2);
+  for (const Point2 p : clean) EXPECT_TRUE(p.x > -0.001 && (p.x < 0.001 || p.x > 9.999));
+  EXPECT_EQ(slicing::without_spikes(square), square);
+  const Ring wide{{10, 0}, {10, 4.9}, {4, 5}, {10, 5.1}, {10, 10}, {0, 10}, {0, 0}};
+  EXPECT_EQ(slicing::without_spikes(wide), wide);
+  EXPECT_LT(slicing::without_spikes({{0, 0}, {5, 0}, {9, 0}, {4, 0.0001}}).size(), 3U);
+  EXPECT_TRUE(slicing::without_spikes({}).empty());
 }
 
 TEST(SliceMesh, SumOfAreasApproachesTheVolume) {

@@ -48,7 +48,8 @@ Ring straightened(const Ring& ring, double straight_mm) {
   // Files round coordinates to about this. Noise goes first, so that it cannot decide which points
   // of a curve are kept.
   constexpr double kNoiseMm = 1e-5;
-  return straightened_ring(straightened_ring(ring, std::min(kNoiseMm, straight_mm)), straight_mm);
+  const Ring clean = straightened_ring(ring, std::min(kNoiseMm, straight_mm));
+  return straightened_ring(slicing::without_spikes(clean), straight_mm);
 }
 
 /// "1 gap", "2 gaps".
@@ -261,12 +262,17 @@ Slices slice_mesh(const Mesh& mesh, const SliceOptions& options, const std::stri
       closings[i] = slicing::close_gaps(contours.open, options.crack_mm, contours.rings);
     layer.repaired = closings[i].widest_open_mm > 0;
     if (layer.repaired && !options.repair) return;  // refused below, lowest layer first
-    if (options.straight_mm > 0)
+    if (options.straight_mm > 0) {
+      // Slivers first: where the side beside one moves, it would become a notch.
+      std::erase_if(contours.rings, [](const Ring& ring) { return slicing::is_sliver(ring); });
       for (Ring& ring : contours.rings) ring = straightened(ring, options.straight_mm);
-    // Where facets gape by a crack they also overlap by as much.
-    layer.polygons =
-        slicing::without_slivers(polygons_from_rings(std::move(contours.rings), FillRule::kNonZero),
-                                 std::max(slicing::kSliverMm, closings[i].widest_crack_mm));
+    }
+    // Where facets gape by a crack they also overlap by as much; two sides that were straightened
+    // may have moved apart by twice what one may.
+    const double sliver_mm =
+        std::max({slicing::kSliverMm, closings[i].widest_crack_mm, 2 * options.straight_mm});
+    layer.polygons = slicing::without_slivers(
+        polygons_from_rings(std::move(contours.rings), FillRule::kNonZero), sliver_mm);
   });
 
   for (std::size_t i = 0; i < slices.layers.size(); ++i)

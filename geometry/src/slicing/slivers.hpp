@@ -9,8 +9,15 @@ namespace routebench::slicing {
 /// rounding of files and of the grid, and where they do not meet exactly they leave slivers.
 inline constexpr double kSliverMm = 0.001;
 
-/// Takes away polygons and holes that are narrower than width_mm on average (a strip's average
-/// width is twice its area over its perimeter).
+/// Whether a ring is no wider than width_mm on average: a strip's average width is twice its area
+/// over its perimeter.
+[[nodiscard]] bool is_sliver(const Ring& ring, double width_mm = kSliverMm);
+
+/// A ring without the spikes and notches that are nowhere wider than width_mm: lines there and back
+/// again. One that the ring begins in stays. Cost   linear.
+[[nodiscard]] Ring without_spikes(const Ring& ring, double width_mm = kSliverMm);
+
+/// Takes away polygons and holes that are slivers.
 [[nodiscard]] Polygons without_slivers(Polygons polygons, double width_mm = kSliverMm);
 
 }  // namespace routebench::slicing
