@@ -85,7 +85,10 @@ struct SkinFinder::Impl {
     return overlay::RingIndex(std::move(rings));
   }
 
-  /// Adds what of a polygon any of the layers leaves open; false if some do not fit on the grid.
+  static constexpr std::size_t kMostAtOnce = 2;
+
+  /// Adds what of a polygon any of the layers leaves open; false if these are too many to be cut at
+  /// once, or some do not fit on the grid.
   [[nodiscard]] bool add_skins(const Polygon& polygon, const std::vector<std::size_t>& around,
                                std::vector<overlay::GridPolygon>& skins) const {
     const Index own = index_of({&polygon, 1});
@@ -102,6 +105,8 @@ struct SkinFinder::Impl {
         needed.push_back(other);
     }
     if (needed.empty()) return true;
+    // Sides of many layers that nearly coincide cross each other over and over.
+    if (needed.size() > kMostAtOnce) return false;
     overlay::GridRings rings = own->rings();
     for (const std::size_t other : needed)
       if (indices[other]) rings.add_near(indices[other]->rings(), own->rings(), {0, 1});
@@ -112,10 +117,16 @@ struct SkinFinder::Impl {
     return true;
   }
 
-  [[nodiscard]] Polygons skins_by_clipper(const Polygons& region,
+  [[nodiscard]] Polygons skins_one_by_one(const Polygons& region,
                                           const std::vector<std::size_t>& around) const {
     Polygons common = region;
-    for (const std::size_t other : around) common = intersect(common, layers[other].polygons);
+    Index own = index_of(common);
+    for (const std::size_t other : around) {
+      if (common.empty()) break;
+      if (own && indices[other] && indices[other]->holds_all_of(*own)) continue;
+      common = intersect(common, layers[other].polygons);
+      own = index_of(common);
+    }
     return rest(region, common);
   }
 };
@@ -150,7 +161,7 @@ Polygons SkinFinder::skins_in(const Polygons& region, std::size_t layer) const {
   if (around.empty()) return {};
   std::vector<overlay::GridPolygon> skins;
   for (const Polygon& polygon : region)
-    if (!impl_->add_skins(polygon, around, skins)) return impl_->skins_by_clipper(region, around);
+    if (!impl_->add_skins(polygon, around, skins)) return impl_->skins_one_by_one(region, around);
   return overlay::to_polygons(skins);
 }
 
