@@ -2,7 +2,11 @@
 
 #include <benchmark/benchmark.h>
 
+#include <random>
+#include <vector>
+
 #include "bench_models.hpp"
+#include "routebench/geometry/grid.hpp"
 #include "routebench/geometry/region.hpp"
 #include "routebench/geometry/slice.hpp"
 #include "routebench/geometry/solid.hpp"
@@ -47,6 +51,24 @@ void boolean(benchmark::State& state) {
 BENCHMARK(boolean<unite>)->Apply(over_points);
 BENCHMARK(boolean<intersect>)->Apply(over_points);
 BENCHMARK(boolean<subtract>)->Apply(over_points);
+
+/// Copies of one outline that differ by a few units of the grid: their sides cross again and again.
+void unite_nearly_equal(benchmark::State& state) {
+  std::mt19937_64 random(1);
+  std::uniform_int_distribution<int> by(-8, 8);
+  const Ring outline = test::star(1, 500, {50, 50}, 47.0, 50.0);
+  std::vector<Ring> rings(static_cast<std::size_t>(state.range(0)), outline);
+  for (Ring& ring : rings)
+    for (Point2& p : ring)
+      p = p + Point2{by(random) / kGridUnitsPerMm, by(random) / kGridUnitsPerMm};
+  for (auto _ : state) benchmark::DoNotOptimize(polygons_from_rings(rings, FillRule::kNonZero));
+  state.SetComplexityN(state.range(0));
+}
+BENCHMARK(unite_nearly_equal)
+    ->RangeMultiplier(2)
+    ->Range(2, 16)
+    ->Unit(benchmark::kMicrosecond)
+    ->Complexity();
 
 /// A plate with many holes: one outline, n holes of six corners.
 void shrink_a_grate(benchmark::State& state) {

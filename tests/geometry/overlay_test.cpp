@@ -6,9 +6,11 @@
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "random_polygons.hpp"
+#include "routebench/geometry/grid.hpp"
 #include "routebench/geometry/region.hpp"
 #include "routebench/geometry/vec.hpp"
 
@@ -175,6 +177,67 @@ TEST(Overlay, HolesMayTouchWhatIsAroundThem) {
                                 FillRule::kNonZero)
                 .size(),
             2u);
+}
+
+/// Copies of one ring whose corners are moved by a few units: sides nearly coincide, as those of
+/// neighbouring layers do, and cross at angles so small that what rounding a crossing moves may
+/// meet the next side.
+std::vector<Ring> nearly_equal_rings(int sides, int copies, int units) {
+  std::mt19937_64 random(7);
+  std::uniform_int_distribution<int> by(-units, units);
+  std::vector<Ring> rings;
+  for (int copy = 0; copy < copies; ++copy) {
+    Ring ring;
+    for (int i = 0; i < sides; ++i) {
+      const double angle = 2 * std::numbers::pi * i / sides + 0.3;
+      const Point2 move{by(random) / kGridUnitsPerMm, by(random) / kGridUnitsPerMm};
+      ring.push_back(snap(30.0 * Point2{std::cos(angle), std::sin(angle)}) + move);
+    }
+    rings.push_back(std::move(ring));
+  }
+  return rings;
+}
+
+std::size_t crossings(const std::vector<Ring>& rings) {
+  std::vector<std::pair<Point2, Point2>> edges;
+  for (const Ring& ring : rings)
+    for (std::size_t i = 0; i < ring.size(); ++i)
+      edges.emplace_back(ring[i], ring[(i + 1) % ring.size()]);
+  const auto apart = [](const auto& s, Point2 p, Point2 q) {
+    return cross(s.second - s.first, p - s.first) * cross(s.second - s.first, q - s.first) <= 0;
+  };
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < edges.size(); ++i)
+    for (std::size_t k = 0; k < i; ++k)
+      if (apart(edges[i], edges[k].first, edges[k].second) &&
+          apart(edges[k], edges[i].first, edges[i].second))
+        ++count;
+  return count;
+}
+
+TEST(Overlay, SidesThatNearlyCoincideAreCutNoOftenerThanTheyCross) {
+  for (const int sides : {4, 12})
+    for (const int copies : {3, 6, 12})
+      for (const int units : {1, 8, 64}) {
+        const std::vector<Ring> rings = nearly_equal_rings(sides, copies, units);
+        for (const FillRule rule : {FillRule::kNonZero, FillRule::kEvenOdd}) {
+          const Polygons polygons = polygons_from_rings(rings, rule);
+          std::vector<Point2> corners;
+          for (const Ring& ring : rings_of(polygons))
+            corners.insert(corners.end(), ring.begin(), ring.end());
+          const auto less = [](Point2 a, Point2 b) {
+            return std::pair(a.x, a.y) < std::pair(b.x, b.y);
+          };
+          std::sort(corners.begin(), corners.end(), less);
+          corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+          EXPECT_LE(corners.size(), static_cast<std::size_t>(sides * copies) + crossings(rings));
+          expect_edges_meet_in_points_only(polygons);
+          const bool is_filled = rule == FillRule::kNonZero || copies % 2 != 0;
+          const double moved_mm2 =
+              perimeter_mm({{rings[0], {}}}) * 4 * (units + 1) / kGridUnitsPerMm;
+          EXPECT_NEAR(area_mm2(polygons), is_filled ? signed_area_mm2(rings[0]) : 0, moved_mm2);
+        }
+      }
 }
 
 // Beyond a metre from the origin another library takes over: both must agree. Up to there

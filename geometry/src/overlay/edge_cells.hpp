@@ -38,6 +38,14 @@ class EdgeCells {
     return lower_.x <= p.x && p.x <= upper_.x && lower_.y <= p.y && p.y <= upper_.y;
   }
 
+  /// Calls visit(number) for each edge in the cell of a point within the bounds, possibly several
+  /// times.
+  template <typename Visit>
+  void visit_near(GridPoint p, Visit&& visit) const {
+    for (std::uint32_t i = head_[row(p.y) * columns_ + column(p.x)]; i != kNone; i = items_[i].next)
+      visit(items_[i].edge);
+  }
+
   /// Whether `is_it` holds for any edge in the cells that another one, within the bounds, runs
   /// through.
   template <typename IsIt>

@@ -280,24 +280,21 @@ std::optional<std::vector<GridPolygon>> offset_rings(const GridRings& rings, dou
   std::optional<std::vector<GridPolygon>> grown = overlay(boundary.take(), Inside::kFirstPositive);
   if (!grown) return std::nullopt;
 
-  GridRings cleaned;
   std::vector<std::uint8_t> moved;
   bool any_moved = false;
   const auto clean_ring = [&](GridRing& ring) {
     any_moved |= cleaner.clean(ring);
-    if (ring.empty()) return;
-    cleaned.begin_ring({1, 0});
-    for (const GridPoint p : ring) cleaned.add(p);
-    cleaned.end_ring();
     moved.insert(moved.end(), cleaner.moved().begin(), cleaner.moved().end());
   };
   for (GridPolygon& polygon : *grown) {
     clean_ring(polygon.outer);
+    if (polygon.outer.empty()) polygon.holes.clear();
     for (GridRing& hole : polygon.holes) clean_ring(hole);
     std::erase_if(polygon.holes, [](const GridRing& hole) { return hole.empty(); });
   }
   std::erase_if(*grown, [](const GridPolygon& polygon) { return polygon.outer.empty(); });
   if (!any_moved || grown->empty()) return grown;
+  const GridRings cleaned = rings_of(*grown);
   // Cleaning moves edges, so rings may overlap by as much.
   if (meet_nowhere(cleaned) || !PlanarEdges(cleaned, moved).any_meets()) return grown;
   return overlay(cleaned, Inside::kFirstNonZero);

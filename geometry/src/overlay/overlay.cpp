@@ -11,7 +11,7 @@
 namespace routebench::overlay {
 namespace {
 
-bool is_inside(Winding w, Inside inside, std::int32_t sets) {
+bool is_inside(Winding w, Inside inside) {
   switch (inside) {
     case Inside::kFirstPositive:
       return w.first > 0;
@@ -25,8 +25,6 @@ bool is_inside(Winding w, Inside inside, std::int32_t sets) {
       return w.first != 0 && w.second != 0;
     case Inside::kFirstOnly:
       return w.first != 0 && w.second == 0;
-    case Inside::kNotInAll:
-      return w.first != 0 && w.second < sets;
   }
   return false;
 }
@@ -67,15 +65,15 @@ double twice_area(const GridRing& ring) {
 /// Collects the boundaries of what is inside, face by face.
 class FaceTracer {
  public:
-  FaceTracer(const PlanarEdges& planar, const ChainGraph& graph, Inside inside, std::int32_t sets)
+  FaceTracer(const PlanarEdges& planar, const ChainGraph& graph, Inside inside)
       : planar_(planar), graph_(graph) {
     const std::vector<Chain>& chains = graph.chains();
     way_.resize(chains.size(), Way::kNone);
     boundary_of_.resize(chains.size(), kNone);
     for (std::size_t c = 0; c < chains.size(); ++c) {
       if (chains[c].is_copy) continue;
-      const bool left = is_inside(chains[c].left(), inside, sets);
-      if (left != is_inside(chains[c].right, inside, sets)) way_[c] = left ? Way::kOn : Way::kBack;
+      const bool left = is_inside(chains[c].left(), inside);
+      if (left != is_inside(chains[c].right, inside)) way_[c] = left ? Way::kOn : Way::kBack;
     }
   }
 
@@ -233,8 +231,8 @@ class ApartRings {
         outside = outside + places_[other].within;
       }
       if (steps_ > kStepsPerPoint * rings_.size()) return std::nullopt;
-      const bool is_outer = is_inside(outside + place.within, inside, 1);
-      if (is_outer == is_inside(outside, inside, 1)) continue;
+      const bool is_outer = is_inside(outside + place.within, inside);
+      if (is_outer == is_inside(outside, inside)) continue;
       GridRing ring = ring_of(i, is_outer);
       if (ring.empty()) continue;
       if (is_outer) {
@@ -315,8 +313,7 @@ class ApartRings {
 
 }  // namespace
 
-std::optional<std::vector<GridPolygon>> overlay(const GridRings& rings, Inside inside,
-                                                std::int32_t sets) {
+std::optional<std::vector<GridPolygon>> overlay(const GridRings& rings, Inside inside) {
   if (rings.rings() == 0) return std::vector<GridPolygon>{};
   // What is offset or cut from a solid seldom meets itself; of two areas the outlines mostly do.
   const bool is_one_set = inside == Inside::kFirstPositive || inside == Inside::kFirstNonZero ||
@@ -326,7 +323,22 @@ std::optional<std::vector<GridPolygon>> overlay(const GridRings& rings, Inside i
   const PlanarEdges planar(rings);
   if (!planar.are_planar()) return std::nullopt;
   const ChainGraph graph(planar);
-  return FaceTracer(planar, graph, inside, sets).run();
+  return FaceTracer(planar, graph, inside).run();
+}
+
+GridRings rings_of(const std::vector<GridPolygon>& polygons) {
+  GridRings rings;
+  const auto add = [&](const GridRing& ring) {
+    rings.begin_ring({1, 0});
+    rings.make_room(ring.size());
+    for (const GridPoint p : ring) rings.add(p);
+    rings.end_ring();
+  };
+  for (const GridPolygon& polygon : polygons) {
+    add(polygon.outer);
+    for (const GridRing& hole : polygon.holes) add(hole);
+  }
+  return rings;
 }
 
 }  // namespace routebench::overlay

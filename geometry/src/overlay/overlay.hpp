@@ -10,17 +10,8 @@
 
 namespace routebench::overlay {
 
-/// Which places are inside, by how often the rings of the two sets run round them. The second set
-/// may be several in one: kNotInAll leaves of the first set what not all of them hold.
-enum class Inside {
-  kFirstPositive,
-  kFirstNonZero,
-  kFirstOdd,
-  kEither,
-  kBoth,
-  kFirstOnly,
-  kNotInAll
-};
+/// Which places are inside, by how often the rings of the two sets run round them.
+enum class Inside { kFirstPositive, kFirstNonZero, kFirstOdd, kEither, kBoth, kFirstOnly };
 
 using GridRing = std::vector<GridPoint>;
 
@@ -33,10 +24,12 @@ struct GridPolygon {
 /// The polygons that hold all that is inside. Rings may cross, overlap and repeat. No three
 /// consecutive points lie on a line.
 ///
-/// Takes   for kNotInAll how many sets the second one is, none of which overlaps itself.
 /// Returns nothing if the rings cannot be cut; see PlanarEdges.
 /// Cost    about linear where edges are spread evenly.
-[[nodiscard]] std::optional<std::vector<GridPolygon>> overlay(const GridRings& rings, Inside inside,
-                                                              std::int32_t sets = 1);
+[[nodiscard]] std::optional<std::vector<GridPolygon>> overlay(const GridRings& rings,
+                                                              Inside inside);
+
+/// The rings of polygons, to their left the inside.
+[[nodiscard]] GridRings rings_of(const std::vector<GridPolygon>& polygons);
 
 }  // namespace routebench::overlay

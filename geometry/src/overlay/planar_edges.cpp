@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <tuple>
 #include <utility>
 
@@ -15,6 +16,12 @@ bool within(const Edge& edge, GridPoint p) {
   const auto [x0, x1] = std::minmax(edge.from.x, edge.to.x);
   const auto [y0, y1] = std::minmax(edge.from.y, edge.to.y);
   return x0 <= p.x && p.x <= x1 && y0 <= p.y && p.y <= y1;
+}
+
+/// Whether the line through an edge comes as near to p as half a unit in x or in y.
+bool passes_through_pixel(const Edge& edge, GridPoint p) {
+  const std::int64_t x = edge.to.x - edge.from.x, y = edge.to.y - edge.from.y;
+  return 2 * std::abs(turn(edge.from, edge.to, p)) <= std::abs(x) + std::abs(y);
 }
 
 /// Where two edges cross, to the nearest unit; the same whichever way they are given.
@@ -83,6 +90,7 @@ void PlanarEdges::set_box(std::uint32_t i) {
 
 void PlanarEdges::cut_until_planar() {
   for (int round = 0; round < kMaxRounds && !cuts_.empty(); ++round) {
+    cut_all_at_cuts();
     const std::vector<std::uint32_t> pieces = apply_cuts();
     // A piece that keeps its edge's number is in the cells twice, which does no harm.
     for (const std::uint32_t e : pieces)
@@ -97,6 +105,18 @@ void PlanarEdges::cut_until_planar() {
       });
   }
   are_planar_ = cuts_.empty();
+}
+
+void PlanarEdges::cut_all_at_cuts() {
+  const std::size_t found = cuts_.size();
+  for (std::size_t i = 0; i < found; ++i) {
+    const GridPoint p = cuts_[i].at;
+    if (i > 0 && p == cuts_[i - 1].at) continue;  // of the edge that it crosses
+    cells_.visit_near(p, [&](std::uint32_t e) {
+      const Edge a = edge(e);
+      if (within(a, p) && passes_through_pixel(a, p)) touch(e, p);
+    });
+  }
 }
 
 std::vector<std::uint32_t> PlanarEdges::apply_cuts() {

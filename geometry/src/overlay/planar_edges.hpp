@@ -10,8 +10,11 @@
 namespace routebench::overlay {
 
 /// The edges of rings, cut at each other. Where edges cross, both are cut at the nearest place of
-/// the grid; that moves them by less than a unit, and what they then meet is cut again. Edge i runs
-/// from point i to the next point of its ring.
+/// the grid, and with them all that pass within half a unit of it: so edges that nearly coincide
+/// become one, where they would cross each other over and over. That moves edges by less than a
+/// unit, and what they then meet is cut again. Edge i runs from point i to the next point of its
+/// ring.
+/// Source: J. Hobby, Practical segment intersection with finite precision output, 1999.
 class PlanarEdges {
  public:
   /// Takes at least one ring.
@@ -57,6 +60,8 @@ class PlanarEdges {
   void link();
   void set_box(std::uint32_t edge);
   void cut_until_planar();
+  /// Cuts whatever passes through the pixel of a cut there too.
+  void cut_all_at_cuts();
   std::vector<std::uint32_t> apply_cuts();
   /// Cuts two edges, not neighbours of one ring, where they meet.
   void look(std::uint32_t e, std::uint32_t f);

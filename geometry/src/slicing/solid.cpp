@@ -70,6 +70,7 @@ std::vector<std::size_t> first_of_equal_layers(const std::vector<Layer>& layers)
 struct SkinFinder::Impl {
   /// What overlays need of one layer; nothing if it is empty or does not fit on their grid.
   using Index = std::optional<overlay::RingIndex>;
+  using Inside = overlay::Inside;
 
   const std::vector<Layer>& layers;
   std::size_t reach;
@@ -85,48 +86,45 @@ struct SkinFinder::Impl {
     return overlay::RingIndex(std::move(rings));
   }
 
-  static constexpr std::size_t kMostAtOnce = 2;
-
-  /// Adds what of a polygon any of the layers leaves open; false if these are too many to be cut at
-  /// once, or some do not fit on the grid.
+  /// Adds what of a polygon any of the layers leaves open; false if some do not fit on the grid.
   [[nodiscard]] bool add_skins(const Polygon& polygon, const std::vector<std::size_t>& around,
                                std::vector<overlay::GridPolygon>& skins) const {
     const Index own = index_of({&polygon, 1});
     if (!own) return false;
-    // All layers are cut at once, and only those that do not hold the polygon anyhow.
+    // Most layers hold the polygon. The others are cut one after the other: sides of many layers
+    // that nearly coincide would cross each other over and over.
     std::vector<std::size_t> needed;
     for (const std::size_t other : around) {
-      const Index& index = indices[other];
-      if (!index && !layers[other].polygons.empty()) return false;
-      if (index && index->holds_all_of(*own)) continue;
-      if (std::none_of(needed.begin(), needed.end(), [&](std::size_t known) {
-            return layers[known].polygons == layers[other].polygons;
-          }))
-        needed.push_back(other);
+      if (!indices[other] && !layers[other].polygons.empty()) return false;
+      if (!indices[other] || !indices[other]->holds_all_of(*own)) needed.push_back(other);
     }
     if (needed.empty()) return true;
-    // Sides of many layers that nearly coincide cross each other over and over.
-    if (needed.size() > kMostAtOnce) return false;
-    overlay::GridRings rings = own->rings();
-    for (const std::size_t other : needed)
-      if (indices[other]) rings.add_near(indices[other]->rings(), own->rings(), {0, 1});
-    const auto faces = overlay::overlay(rings, overlay::Inside::kNotInAll,
-                                        static_cast<std::int32_t>(needed.size()));
-    if (!faces) return false;
-    skins.insert(skins.end(), faces->begin(), faces->end());
-    return true;
+    if (needed.size() == 1) return add_cut(*own, indices[needed[0]], Inside::kFirstOnly, skins);
+    Index common = own;
+    for (const std::size_t other : needed) {
+      if (!common || (indices[other] && indices[other]->holds_all_of(*common))) continue;
+      std::vector<overlay::GridPolygon> left;
+      if (!add_cut(*common, indices[other], Inside::kBoth, left)) return false;
+      common.reset();
+      if (!left.empty()) common.emplace(overlay::rings_of(left));
+    }
+    return add_cut(*own, common, Inside::kFirstOnly, skins);
   }
 
-  [[nodiscard]] Polygons skins_one_by_one(const Polygons& region,
-                                          const std::vector<std::size_t>& around) const {
+  /// Adds what two areas make; false if they cannot be cut.
+  [[nodiscard]] static bool add_cut(const overlay::RingIndex& area, const Index& other,
+                                    Inside inside, std::vector<overlay::GridPolygon>& made) {
+    overlay::GridRings rings = area.rings();
+    if (other) rings.add_near(other->rings(), area.rings(), {0, 1});
+    const auto faces = overlay::overlay(rings, inside);
+    if (faces) made.insert(made.end(), faces->begin(), faces->end());
+    return faces.has_value();
+  }
+
+  [[nodiscard]] Polygons skins_off_the_grid(const Polygons& region,
+                                            const std::vector<std::size_t>& around) const {
     Polygons common = region;
-    Index own = index_of(common);
-    for (const std::size_t other : around) {
-      if (common.empty()) break;
-      if (own && indices[other] && indices[other]->holds_all_of(*own)) continue;
-      common = intersect(common, layers[other].polygons);
-      own = index_of(common);
-    }
+    for (const std::size_t other : around) common = common_part(common, layers[other].polygons);
     return rest(region, common);
   }
 };
@@ -161,7 +159,7 @@ Polygons SkinFinder::skins_in(const Polygons& region, std::size_t layer) const {
   if (around.empty()) return {};
   std::vector<overlay::GridPolygon> skins;
   for (const Polygon& polygon : region)
-    if (!impl_->add_skins(polygon, around, skins)) return impl_->skins_one_by_one(region, around);
+    if (!impl_->add_skins(polygon, around, skins)) return impl_->skins_off_the_grid(region, around);
   return overlay::to_polygons(skins);
 }
 
