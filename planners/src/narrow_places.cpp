@@ -20,7 +20,7 @@ constexpr double kSharpest = 0.5;
 constexpr double kCornerDistances = 2;
 constexpr std::size_t kLookAhead = 3;  // edges: a few small ones may lead away at first
 constexpr int kSearches = 8;           // over the whole inset, for one ring of the area
-// With more places in doubt, and that share of all, the whole area is.
+// With more places in doubt, and that share of all corners, the whole area is.
 constexpr std::size_t kManyDoubts = 32;
 constexpr std::size_t kLargeShare = 8;
 
@@ -236,12 +236,15 @@ std::vector<Box2> doubtful_places(const Polygons& inset, const Polygons& area, d
     return {{snap(box.lower - margin), snap(box.upper + margin)}};
   };
   if (inset.empty()) return all();
-  std::size_t places = 0, doubts = 0;
+  std::size_t corners = 0, doubts = 0;
+  for (const Polygon& polygon : area) {
+    corners += polygon.outer.size();
+    for (const Ring& hole : polygon.holes) corners += hole.size();
+  }
   const auto visit = [&](Point2 p, bool has_inset) {
-    ++places;
     if (has_inset) return true;
     add({snap(p - margin), snap(p + margin)}, boxes);
-    return ++doubts < kManyDoubts || doubts * kLargeShare < places;
+    return ++doubts < kManyDoubts || doubts * kLargeShare < corners;
   };
   Follower follower(inset);
   for (const Polygon& polygon : area) {

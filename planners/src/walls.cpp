@@ -21,6 +21,8 @@ constexpr double kEnough = 0.85;
 /// How much farther a wall may be from the one before than it should, where no line fits between
 /// them: at the bottom of a stub about a sixth of a millimetre deep.
 constexpr double kStubMm = 0.03;
+/// What sides that would coincide are kept apart by: more than offsets are cleaned of.
+constexpr double kSideMm = 0.015;
 /// What is narrow is looked at so many spacings round about.
 constexpr double kMarginSpacings = 3;
 
@@ -80,6 +82,13 @@ Box2 grown(const Box2& box, double mm) {
   return {box.lower - by, box.upper + by};
 }
 
+/// What of an area is farther than `reach_mm` from what is laid. Most sides of the area are as far
+/// as that, and would cross those of what is laid, grown, at every corner.
+Polygons left_open(const Polygons& area, const Polygons& laid, double reach_mm) {
+  const Polygons left = subtract(area, offset(laid, reach_mm + kSideMm));
+  return left.empty() ? left : intersect(offset(left, kSideMm), area);
+}
+
 /// What a wall leaves open before it, of what the ones before it left.
 Polygons gaps_before(const Polygons& polygons, const std::vector<Polygons>& regions,
                      std::size_t wall, const PlanContext& context) {
@@ -94,8 +103,8 @@ Polygons gaps_before(const Polygons& polygons, const std::vector<Polygons>& regi
   for (const Box2& box : doubtful_places(region, before, step_mm, kStubMm, margin_mm)) {
     const Polygons open = clipped(before, box);
     const Polygons laid = clipped(region, grown(box, margin_mm));  // all that reaches into it
-    for (Polygon& gap : subtract(wall == 0 ? open : offset(open, -reach_mm),
-                                 offset(laid, wall == 0 ? step_mm : reach_mm)))
+    for (Polygon& gap : left_open(wall == 0 ? open : offset(open, -reach_mm), laid,
+                                  wall == 0 ? step_mm : reach_mm))
       gaps.push_back(std::move(gap));
   }
   return gaps;
@@ -170,11 +179,11 @@ Polygons without_strips(const Polygons& region, const Polygons& next, double rea
   if (doubtful_places(next, region, context.spacing_mm, slack_mm, margin_mm).empty()) return region;
   const Polygons cores = offset(region, -near_mm / 2);
   Polygons strips;
-  for (const Box2& box : doubtful_places(cores, region, near_mm / 2, slack_mm, margin_mm)) {
-    const Polygons wide = offset(clipped(cores, grown(box, margin_mm)), near_mm / 2);
-    for (Polygon& part : subtract(clipped(region, box), wide))
+  for (const Box2& box : doubtful_places(cores, region, near_mm / 2, slack_mm, margin_mm))
+    for (Polygon& part :
+         left_open(clipped(region, box), clipped(cores, grown(box, margin_mm)), near_mm / 2))
       if (is_strip(part, reach_mm, context)) strips.push_back(std::move(part));
-  }
+  if (strips.empty()) return region;
   return subtract(region, strips);
 }
 
