@@ -3,6 +3,8 @@
 #include <bit>
 #include <cmath>
 #include <cstdlib>
+#include <tuple>
+#include <utility>
 
 namespace routebench::overlay {
 namespace {
@@ -32,6 +34,17 @@ bool is_right_of(const Edge& e, const Edge& f) {
   }
   if (a.to.y <= b.to.y) return turn(b.from, b.to, a.to) < 0;
   return turn(a.from, a.to, b.to) > 0;
+}
+
+GridPoint crossing_of(Edge e, Edge f) {
+  if (e.to < e.from) std::swap(e.from, e.to);
+  if (f.to < f.from) std::swap(f.from, f.to);
+  if (std::tie(f.from, f.to) < std::tie(e.from, e.to)) std::swap(e, f);
+  const auto a = static_cast<double>(turn(f.from, f.to, e.from));
+  const auto b = static_cast<double>(turn(f.from, f.to, e.to));
+  const double share = a / (a - b);
+  return {e.from.x + static_cast<std::int32_t>(std::lround(share * (e.to.x - e.from.x))),
+          e.from.y + static_cast<std::int32_t>(std::lround(share * (e.to.y - e.from.y)))};
 }
 
 EdgeCells::EdgeCells(const GridRings& rings) {

@@ -88,6 +88,9 @@ class EdgeCells {
   std::vector<Item> items_;
 };
 
+/// Where two edges that cross do so, to the nearest unit; the same whichever way they are given.
+[[nodiscard]] GridPoint crossing_of(Edge e, Edge f);
+
 /// Whether edge e meets a height more to the right than edge f. Both span the height; they may meet
 /// in an end but do not cross.
 [[nodiscard]] bool is_right_of(const Edge& e, const Edge& f);

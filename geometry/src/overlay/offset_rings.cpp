@@ -8,6 +8,8 @@
 #include <utility>
 
 #include "overlay/monotone_runs.hpp"
+#include "overlay/planar_edges.hpp"
+#include "overlay/small_loops.hpp"
 
 namespace routebench::overlay {
 namespace {
@@ -31,7 +33,8 @@ GridPoint moved(Vector p, Vector by) {
 /// round at least once is the result.
 class MovedBoundary {
  public:
-  MovedBoundary(double distance, std::size_t points) : distance_(distance) {
+  MovedBoundary(double distance, double clean, std::size_t points)
+      : distance_(distance), clean_(clean), small_loops_(distance > 0) {
     curve_.reserve(points + points / 2);
   }
 
@@ -44,8 +47,11 @@ class MovedBoundary {
     } while (drop_used_edges());
     const std::size_t n = corners_.size();
     if (n < 3) return;  // nothing is left of the ring
-    curve_.begin_ring({1, 0});
+    drawn_.clear();
     for (std::size_t i = 0, before = n - 1; i < n; before = i++) join(corners_[i], before, i);
+    small_loops_.drop_from(drawn_);
+    curve_.begin_ring({1, 0});
+    for (const DrawnPoint& p : drawn_) curve_.add(p.at);
     curve_.end_ring();
   }
 
@@ -126,8 +132,8 @@ class MovedBoundary {
   void join(Vector p, std::size_t before, std::size_t after) {
     const Vector u = normals_[before], v = normals_[after];
     const double sine = cross(u, v), cosine = dot(u, v);
-    const auto go_to = [&](Vector by) {
-      curve_.add(moved(p, {distance_ * by.x, distance_ * by.y}));
+    const auto go_to = [&](Vector by, bool ends_side = true, bool is_far = false) {
+      draw({moved(p, {distance_ * by.x, distance_ * by.y}), ends_side, is_far});
     };
     const double mitre = 1 / (1 + cosine);
     const Vector tip{(u.x + v.x) * mitre, (u.y + v.y) * mitre};
@@ -138,24 +144,31 @@ class MovedBoundary {
       if (1 + cosine >= kShortestMitre && left_[before] >= 0 && left_[after] >= 0)
         return go_to(tip);
       go_to(u);
-      curve_.add(moved(p, {}));
-      go_to(v);
+      draw({moved(p, {}), false});
+      go_to(v, false);
     } else if (1 + cosine >= kShortestMitre) {
-      go_to(tip);
+      go_to(tip, true, std::abs(distance_) * (std::sqrt(2 * mitre) - 1) > clean_);
     } else {
       const double cut =
           std::tan(std::atan2(std::abs(sine), cosine) / 4) * (distance_ < 0 ? -1 : 1);
-      go_to({u.x - u.y * cut, u.y + u.x * cut});
-      go_to({v.x + v.y * cut, v.y - v.x * cut});
+      go_to({u.x - u.y * cut, u.y + u.x * cut}, true, true);
+      go_to({v.x + v.y * cut, v.y - v.x * cut}, true, true);
     }
+  }
+
+  void draw(const DrawnPoint& p) {
+    if (drawn_.empty() || drawn_.back().at != p.at) drawn_.push_back(p);
   }
 
   static constexpr double kShortestMitre = 0.5;  // 1 + cosine of the turn: a mitre of twice
 
   double distance_;
+  double clean_;
   GridRings curve_;
   std::vector<Vector> corners_;  // of the ring, corner i at the beginning of edge i
   std::vector<Vector> kept_;
+  SmallLoops small_loops_;
+  std::vector<DrawnPoint> drawn_;
   std::vector<Vector> normals_;  // of edges
   std::vector<double> left_;     // of edges
   std::vector<double> used_;     // at corners
@@ -270,7 +283,7 @@ class Cleaner {
 std::optional<std::vector<GridPolygon>> offset_rings(const GridRings& rings, double distance,
                                                      double clean) {
   Cleaner smoother(clean), cleaner(clean);
-  MovedBoundary boundary(distance, rings.size());
+  MovedBoundary boundary(distance, clean, rings.size());
   for (std::uint32_t i = 0; i < rings.rings(); ++i) {
     const std::span<const GridPoint> points = rings.ring(i);
     GridRing ring(points.begin(), points.end());

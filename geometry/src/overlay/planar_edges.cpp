@@ -24,18 +24,6 @@ bool passes_through_pixel(const Edge& edge, GridPoint p) {
   return 2 * std::abs(turn(edge.from, edge.to, p)) <= std::abs(x) + std::abs(y);
 }
 
-/// Where two edges cross, to the nearest unit; the same whichever way they are given.
-GridPoint crossing_of(Edge e, Edge f) {
-  if (e.to < e.from) std::swap(e.from, e.to);
-  if (f.to < f.from) std::swap(f.from, f.to);
-  if (std::tie(f.from, f.to) < std::tie(e.from, e.to)) std::swap(e, f);
-  const auto a = static_cast<double>(turn(f.from, f.to, e.from));
-  const auto b = static_cast<double>(turn(f.from, f.to, e.to));
-  const double share = a / (a - b);
-  return {e.from.x + static_cast<std::int32_t>(std::lround(share * (e.to.x - e.from.x))),
-          e.from.y + static_cast<std::int32_t>(std::lround(share * (e.to.y - e.from.y)))};
-}
-
 }  // namespace
 
 PlanarEdges::PlanarEdges(const GridRings& rings) : rings_(rings), cells_(rings) {
