@@ -91,21 +91,23 @@ class LayerAssembly {
                      std::move(region), {},          layer_.repaired};
     context_.density = kind == StrokeKind::kSparse ? task_.density : 1;
     if (memo_ == nullptr || repeats_every == 0) {
-      append(kind, sound_plan(*planner, name, part));
+      append(kind, sound_plan(*planner, name, part), nullptr);
       return;
     }
     const PlanMemo::Question question{planner, part.index % repeats_every, part.height_mm,
                                       context_.start, context_.density};
-    append(kind, *memo_->route(question, part.polygons,
-                               [&] { return sound_plan(*planner, name, part); }));
+    const std::shared_ptr<const Route> known =
+        memo_->route(question, part.polygons, [&] { return sound_plan(*planner, name, part); });
+    append(kind, *known, known);
   }
 
   [[nodiscard]] Point2 nozzle() const { return context_.start; }
   [[nodiscard]] PlannedLayer take() { return std::move(planned_); }
 
  private:
-  void append(StrokeKind kind, Route route) {
+  void append(StrokeKind kind, Route route, std::shared_ptr<const Route> shared) {
     if (route.strokes.empty()) return;
+    planned_.parts.push_back({route.strokes.size(), std::move(shared)});
     context_.start = route.strokes.back().points.back();
     planned_.kinds.insert(planned_.kinds.end(), route.strokes.size(), kind);
     std::move(route.strokes.begin(), route.strokes.end(),

@@ -60,11 +60,18 @@ struct PlanTime {
   std::int64_t cpu_ns = 0;  ///< of the thread, or of the planner's own process
 };
 
+/// Consecutive strokes of a layer: what one call of a planner made.
+struct PlannedPart {
+  std::size_t strokes;
+  std::shared_ptr<const Route> shared;  ///< the same for layers that have it in common, or nothing
+};
+
 struct PlannedLayer {
   Route route;
   std::vector<StrokeKind> kinds;  ///< one a stroke
   std::int64_t plan_wall_ns = 0;  ///< inside plan() alone, summed over its calls; see timed_plan
   std::int64_t plan_cpu_ns = 0;
+  std::vector<PlannedPart> parts = {};  ///< of the route; nothing if it is not known
 };
 
 class PlanMemo;

@@ -16,6 +16,7 @@
 namespace routebench {
 
 struct GcodeDialect;
+struct LayerPart;
 
 /// How far a print has come between two layers.
 struct GcodeProgress {
@@ -64,8 +65,8 @@ class GcodeWriter {
   void finish();
 
  private:
-  /// Moves the progress on behind a layer.
-  void go_on_by(const RoutedLayer& routed);
+  /// Moves the progress on behind a layer with strokes.
+  void go_on_by(const Layer& layer, std::span<const LayerPart> parts);
   void write(std::string_view text);
 
   std::ostream& out_;
