@@ -103,9 +103,9 @@ void GcodeWriter::write_layers(std::span<const RoutedLayer> layers,
                                const ParallelFor& parallel_for) {
   // Some layers are formatted at the same time as those before them are written.
   constexpr std::size_t kLayersTogether = 16;
-  std::vector<std::string> ready;
+  std::vector<LayerText> ready;
   const auto write_ready = [this, &ready] {
-    for (const std::string& text : ready) write(text);
+    for (const LayerText& text : ready) text.write(out_);
   };
   PartTexts known;
   const Polygons* outline = nullptr;  // of the layer before
@@ -126,12 +126,11 @@ void GcodeWriter::write_layers(std::span<const RoutedLayer> layers,
       texts.emplace_back(task_, printer_, *dialect_, before, *layer, std::move(parts));
     }
     parallel_for(makers.size(), [&](std::size_t i) { texts[makers[i]].make_part_texts(); });
-    std::vector<std::string> formatted(texts.size());
     parallel_for(texts.size() + 1, [&](std::size_t item) {
       if (item == 0) return write_ready();
-      formatted[item - 1] = texts[item - 1].text();
+      texts[item - 1].format();
     });
-    ready = std::move(formatted);
+    ready = std::move(texts);
   }
   write_ready();
 }

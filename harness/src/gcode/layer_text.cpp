@@ -1,6 +1,7 @@
 #include "gcode/layer_text.hpp"
 
 #include <array>
+#include <ostream>
 #include <utility>
 
 #include "gcode/near_boundary.hpp"
@@ -56,7 +57,7 @@ void LayerText::make_part_texts() {
   }
 }
 
-std::string LayerText::text() {
+void LayerText::format() {
   look();
   nozzle_ = before_.nozzle;
   z_mm_ = before_.z_mm;
@@ -66,7 +67,20 @@ std::string LayerText::text() {
   mark_layer();
   if (before_.layers == 1) line("M106 S255");
   for (std::size_t i = 0; i < parts_.size(); ++i) write_part(i);
-  return text_.take();
+}
+
+void LayerText::write(std::ostream& out) const {
+  const auto put = [&out](std::string_view text) {
+    out.write(text.data(), static_cast<std::streamsize>(text.size()));
+  };
+  const std::string_view own = text_.view();
+  std::size_t written = 0;
+  for (const Copy& copy : copies_) {
+    put(own.substr(written, copy.place - written));
+    put(copy.text->text);
+    written = copy.place;
+  }
+  put(own.substr(written));
 }
 
 void LayerText::look() {
@@ -111,8 +125,7 @@ void LayerText::write_part(std::size_t i) {
   extrude(first, 1, 2, filament, 0);
   filament_ = filament.filament();
   if (part.text) {
-    text_.make_room(part.text->text.size());
-    text_.put(part.text->text);
+    copies_.push_back({text_.view().size(), part.text});
     marks_ = part.text->marks_after;
     nozzle_ = part.strokes.back().points.back();
     filament_ += part.text->filament;

@@ -2,6 +2,7 @@
 /// The text of one layer of G-code.
 
 #include <cstddef>
+#include <iosfwd>
 #include <memory>
 #include <optional>
 #include <span>
@@ -62,10 +63,12 @@ class LayerText {
   LayerText(const Task& task, const Printer& printer, const GcodeDialect& dialect,
             const GcodeProgress& before, const Layer& layer, std::vector<LayerPart> parts);
 
-  /// Makes the texts that are for other layers too; before text() of any of these.
+  /// Makes the texts that are for other layers too; before format() of any of these.
   void make_part_texts();
 
-  [[nodiscard]] std::string text();
+  void format();
+  /// Writes what was formatted.
+  void write(std::ostream& out) const;
 
   /// Of the nozzle while it prints a layer: layers are cut at half their height.
   [[nodiscard]] static double height_mm(const Layer& layer) {
@@ -106,7 +109,14 @@ class LayerText {
   bool has_looked_ = false;
   std::vector<std::vector<MoveType>> types_;  // of each part's strokes, but where others tell them
   std::optional<EdgeGrid> outline_;  // of the layer, if travels are asked whether they leave it
+  /// A text of a part, and the place in the layer's own text before which it goes.
+  struct Copy {
+    std::size_t place;
+    std::shared_ptr<const PartText> text;
+  };
+
   TextBuffer text_;
+  std::vector<Copy> copies_;
   std::optional<Point2> nozzle_;
   std::optional<double> z_mm_;  // as last written
   GcodeMarks marks_;

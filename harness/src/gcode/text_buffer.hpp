@@ -28,6 +28,7 @@ class TextBuffer {
     used_ =
         static_cast<std::size_t>(put_units(text_.data() + used_, units, decimals) - text_.data());
   }
+  [[nodiscard]] std::string_view view() const { return {text_.data(), used_}; }
   /// Leaves it empty.
   [[nodiscard]] std::string take() {
     text_.resize(std::exchange(used_, 0));
