@@ -192,6 +192,33 @@ std::vector<std::size_t> all_layers(const SlicedModel& sliced) {
   return chosen;
 }
 
+std::vector<std::size_t> first_of_equal_routes(const Contender& contender,
+                                               const PreparedModel& model,
+                                               std::span<const std::size_t> chosen) {
+  const std::vector<Layer>& layers = model.sliced.layers;
+  const std::vector<std::size_t> first = first_of_equal_layers(layers);
+  const int period = contender.repeats_every();
+  std::vector<std::size_t> original(chosen.size());
+  std::map<std::pair<std::size_t, int>, std::vector<std::size_t>> known;  // different ones' places
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    original[i] = i;
+    if (period == 0) continue;
+    const Layer& layer = layers[chosen[i]];
+    const Demand& demand = model.demands[chosen[i]];
+    std::vector<std::size_t>& places = known[{first[chosen[i]], layer.index % period}];
+    const auto equal = std::find_if(places.begin(), places.end(), [&](std::size_t place) {
+      const Demand& other = model.demands[chosen[place]];
+      return layers[chosen[place]].height_mm == layer.height_mm && other.dense == demand.dense &&
+             other.sparse == demand.sparse;
+    });
+    if (equal != places.end())
+      original[i] = *equal;
+    else
+      places.push_back(i);
+  }
+  return original;
+}
+
 std::vector<PlannedLayer> plan_layers(const Contender& contender, const PreparedModel& model,
                                       std::span<const std::size_t> chosen, const Task& task,
                                       std::uint64_t seed, std::stop_token stop,

@@ -131,6 +131,15 @@ TEST(PlanLayers, WhatIsTakenOverIsWhatWouldBePlanned) {
         EXPECT_EQ(taken[i].route, planned[i].route) << name << ", place " << i;
         EXPECT_EQ(taken[i].kinds, planned[i].kinds) << name << ", place " << i;
       }
+      const std::vector<std::size_t> original = first_of_equal_routes(contender, model, chosen);
+      std::size_t different = 0;
+      for (std::size_t i = 0; i < planned.size(); ++i) {
+        if (original[i] == i) ++different;
+        EXPECT_EQ(original[original[i]], original[i]);
+        EXPECT_EQ(planned[original[i]].route, planned[i].route) << name << ", place " << i;
+        EXPECT_EQ(planned[original[i]].kinds, planned[i].kinds) << name << ", place " << i;
+      }
+      EXPECT_LT(different, chosen.size()) << name;
     }
   }
 }

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <stop_token>
 #include <string>
@@ -102,6 +103,12 @@ class Contender {
   /// The most memory that planning has taken so far: of this process, or of a planner's own process
   /// if that took more.
   [[nodiscard]] double peak_rss_bytes() const;
+
+  /// After how many layers its planners promise to repeat themselves; 0 if any of them does not.
+  /// See PlannerInfo::repeats_every.
+  [[nodiscard]] int repeats_every() const {
+    return std::lcm(shell_ ? shell_repeats_every_ : 1, fill_ ? fill_repeats_every_ : 1);
+  }
 
   [[nodiscard]] const ContenderSpec& spec() const noexcept { return spec_; }
   /// The slots' parameters, all of them.
