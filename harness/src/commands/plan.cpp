@@ -151,8 +151,7 @@ class Plan {
     return true;
   }
 
-  /// Plans each layer; or only what is different, for times are looked at only together with
-  /// scores.
+  /// Plans each layer; or equal ones once, where no times are asked for.
   void plan_with(const Contender& contender) {
     const bool once = arguments_.no_judge;
     std::vector<std::size_t> original(chosen_.size());

@@ -139,9 +139,8 @@ enum class Repeats { kPlan, kTakeOver };
 ///
 /// Takes   places in the model's layers, ascending.
 /// Returns one planned layer for each of them.
-/// Throws  what Contender::plan throws, of the lowest such layer; under kTakeOver those that are
-/// the
-///         first of equal ones go before all others.
+/// Throws  what Contender::plan throws, of the lowest such layer; under kTakeOver the first ones of
+///         equal layers count before the others.
 [[nodiscard]] std::vector<PlannedLayer> plan_layers(
     const Contender& contender, const PreparedModel& model, std::span<const std::size_t> chosen,
     const Task& task, std::uint64_t seed, std::stop_token stop, const ParallelFor& parallel_for,
