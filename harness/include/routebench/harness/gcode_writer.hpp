@@ -57,8 +57,8 @@ class GcodeWriter {
   /// Layers come in ascending order, in one call or in several; a layer without strokes writes
   /// nothing. They are formatted at the same time and written in their order: the bytes depend
   /// neither on the loop nor on how layers are spread over calls.
-  /// Cost linear in the points, but for those of parts that equal layers share (PlannedPart::shared),
-  ///      whose text is made once; the text of some layers is in memory at a time.
+  /// Cost linear in the points; parts that equal layers share (PlannedPart::shared) are formatted
+  ///      once. The text of some layers, and of such parts, is in memory at a time.
   void write_layers(std::span<const RoutedLayer> layers,
                     const ParallelFor& parallel_for = serial_for);
 
