@@ -90,29 +90,33 @@ class LayerAssembly {
     const Layer part{layer_.index,      layer_.z_mm, layer_.height_mm,
                      std::move(region), {},          layer_.repaired};
     context_.density = kind == StrokeKind::kSparse ? task_.density : 1;
-    Route route = known_or_planned(*planner, name, repeats_every, part);
-    if (route.strokes.empty()) return;
-    context_.start = route.strokes.back().points.back();
-    planned_.kinds.insert(planned_.kinds.end(), route.strokes.size(), kind);
-    std::move(route.strokes.begin(), route.strokes.end(),
-              std::back_inserter(planned_.route.strokes));
+    if (memo_ == nullptr || repeats_every == 0) {
+      append(kind, sound_plan(*planner, name, part), nullptr);
+      return;
+    }
+    const PlanMemo::Question question{planner, part.index % repeats_every, part.height_mm,
+                                      context_.start, context_.density};
+    const std::shared_ptr<const Route> known =
+        memo_->route(question, part.polygons, [&] { return sound_plan(*planner, name, part); });
+    append(kind, *known, known);
   }
 
   [[nodiscard]] Point2 nozzle() const { return context_.start; }
   [[nodiscard]] PlannedLayer take() { return std::move(planned_); }
 
  private:
-  Route known_or_planned(const Planner& planner, const std::string& name, int repeats_every,
-                         const Layer& part) {
-    const bool may_be_known = memo_ != nullptr && repeats_every > 0;
-    const PlanMemo::Question question{&planner, may_be_known ? part.index % repeats_every : 0,
-                                      part.height_mm, context_.start, context_.density};
-    if (may_be_known)
-      if (std::optional<Route> known = memo_->find(question, part.polygons))
-        return *std::move(known);
+  void append(StrokeKind kind, Route route, std::shared_ptr<const Route> shared) {
+    if (route.strokes.empty()) return;
+    planned_.parts.push_back({route.strokes.size(), std::move(shared)});
+    context_.start = route.strokes.back().points.back();
+    planned_.kinds.insert(planned_.kinds.end(), route.strokes.size(), kind);
+    std::move(route.strokes.begin(), route.strokes.end(),
+              std::back_inserter(planned_.route.strokes));
+  }
+
+  Route sound_plan(const Planner& planner, const std::string& name, const Layer& part) {
     Route route = plan_part(planner, name, part);
     if (const std::string fault = fault_of(route); !fault.empty()) throw failure(name, fault);
-    if (may_be_known) memo_->keep(question, part.polygons, route);
     return route;
   }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <numeric>
 #include <utility>
 
@@ -89,17 +90,30 @@ SlicedModel read_layer_file(const std::string& spec, const Task& task,
   return sliced;
 }
 
-/// Of each layer the lowest one of its run of equal layers if both have as many of the run above
-/// and below as skins reach; itself if that is not so.
+/// Of each layer the lowest one whose skins are found from the same polygons: it is equal and has,
+/// beside air, the same different layers in reach; itself if it is the first such one.
 std::vector<std::size_t> first_of_equal_surroundings(const std::vector<Layer>& layers,
                                                      std::span<const std::size_t> first,
                                                      int skin_layers) {
   const auto reach = static_cast<std::size_t>(std::max(skin_layers, 0));
+  std::map<std::vector<std::size_t>, std::size_t> lowest;
   std::vector<std::size_t> original(layers.size());
   for (std::size_t i = 0; i < layers.size(); ++i) {
-    const std::size_t lowest = first[i] + reach;
-    const bool is_clear = lowest <= i && i + reach < layers.size() && first[i + reach] == first[i];
-    original[i] = is_clear && layers[lowest].solid == layers[i].solid ? lowest : i;
+    // In the order in which SkinFinder asks them, so that results are equal to the last bit.
+    std::vector<std::size_t> asked = {first[i]};
+    const auto ask = [&asked](std::size_t other) {
+      if (std::find(asked.begin(), asked.end(), other) == asked.end()) asked.push_back(other);
+    };
+    if (i < reach || i + reach >= layers.size()) {
+      ask(layers.size());  // air, which leaves nothing to ask
+    } else {
+      for (std::size_t distance = reach; distance > 0; --distance) {
+        ask(first[i - distance]);
+        ask(first[i + distance]);
+      }
+    }
+    const std::size_t equal = lowest.emplace(std::move(asked), i).first->second;
+    original[i] = layers[equal].solid == layers[i].solid ? equal : i;
   }
   return original;
 }
@@ -178,6 +192,33 @@ std::vector<std::size_t> all_layers(const SlicedModel& sliced) {
   return chosen;
 }
 
+std::vector<std::size_t> first_of_equal_routes(const Contender& contender,
+                                               const PreparedModel& model,
+                                               std::span<const std::size_t> chosen) {
+  const std::vector<Layer>& layers = model.sliced.layers;
+  const std::vector<std::size_t> first = first_of_equal_layers(layers);
+  const int period = contender.repeats_every();
+  std::vector<std::size_t> original(chosen.size());
+  std::map<std::pair<std::size_t, int>, std::vector<std::size_t>> known;  // different ones' places
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    original[i] = i;
+    if (period == 0) continue;
+    const Layer& layer = layers[chosen[i]];
+    const Demand& demand = model.demands[chosen[i]];
+    std::vector<std::size_t>& places = known[{first[chosen[i]], layer.index % period}];
+    const auto equal = std::find_if(places.begin(), places.end(), [&](std::size_t place) {
+      const Demand& other = model.demands[chosen[place]];
+      return layers[chosen[place]].height_mm == layer.height_mm && other.dense == demand.dense &&
+             other.sparse == demand.sparse;
+    });
+    if (equal != places.end())
+      original[i] = *equal;
+    else
+      places.push_back(i);
+  }
+  return original;
+}
+
 std::vector<PlannedLayer> plan_layers(const Contender& contender, const PreparedModel& model,
                                       std::span<const std::size_t> chosen, const Task& task,
                                       std::uint64_t seed, std::stop_token stop,
@@ -189,9 +230,18 @@ std::vector<PlannedLayer> plan_layers(const Contender& contender, const Prepared
     return !first.empty() &&
            (first[layer] != layer || (layer + 1 < layers.size() && first[layer + 1] == layer));
   };
+  // The first of equal layers before the others, which take over from them: a thread that came to
+  // the second while another plans the first would have to wait.
+  std::vector<std::size_t> order(chosen.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  if (repeats == Repeats::kTakeOver)
+    std::stable_partition(order.begin(), order.end(), [&](std::size_t i) {
+      return i == 0 || first[chosen[i - 1]] != first[chosen[i]];
+    });
   PlanMemo memo;
   std::vector<PlannedLayer> planned(chosen.size());
-  parallel_for(chosen.size(), [&](std::size_t i) {
+  parallel_for(chosen.size(), [&](std::size_t place) {
+    const std::size_t i = order[place];
     planned[i] =
         contender.plan(layers[chosen[i]], model.demands[chosen[i]], task, model.sliced.origin, seed,
                        stop, has_equals(chosen[i]) ? &memo : nullptr);

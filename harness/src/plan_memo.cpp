@@ -1,6 +1,7 @@
 #include "plan_memo.hpp"
 
 #include <bit>
+#include <utility>
 
 namespace routebench {
 namespace {
@@ -26,19 +27,22 @@ std::uint64_t hash_of(const Polygons& region) {
 
 }  // namespace
 
-std::optional<Route> PlanMemo::find(const Question& question, const Polygons& region) {
+PlanMemo::Entry& PlanMemo::entry_of(const Question& question, const Polygons& region) {
   const std::uint64_t hash = hash_of(region);
   const std::scoped_lock lock(mutex_);
   const auto [begin, end] = entries_.equal_range(hash);
   for (auto at = begin; at != end; ++at)
-    if (at->second.question == question && at->second.region == region) return at->second.route;
-  return std::nullopt;
+    if (at->second->question == question && at->second->region == region) return *at->second;
+  std::unique_ptr<Entry> entry(new Entry{question, region, {}, nullptr});
+  return *entries_.emplace(hash, std::move(entry))->second;
 }
 
-void PlanMemo::keep(const Question& question, const Polygons& region, const Route& route) {
-  const std::uint64_t hash = hash_of(region);
-  const std::scoped_lock lock(mutex_);
-  entries_.emplace(hash, Entry{question, region, route});
+std::shared_ptr<const Route> PlanMemo::route(const Question& question, const Polygons& region,
+                                             const std::function<Route()>& plan) {
+  Entry& entry = entry_of(question, region);
+  const std::scoped_lock lock(entry.planning);
+  if (!entry.route) entry.route = std::make_shared<const Route>(plan());
+  return entry.route;
 }
 
 }  // namespace routebench

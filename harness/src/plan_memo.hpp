@@ -2,8 +2,9 @@
 /// What has been planned in a job already.
 
 #include <cstdint>
+#include <functional>
+#include <memory>
 #include <mutex>
-#include <optional>
 #include <unordered_map>
 
 #include "routebench/planning/planner.hpp"
@@ -24,20 +25,26 @@ class PlanMemo {
     friend bool operator==(const Question&, const Question&) = default;
   };
 
-  /// The route that was kept for an equal region and question; nothing if there is none.
-  /// Cost   linear in the region's vertices, and in those of the route.
-  [[nodiscard]] std::optional<Route> find(const Question& question, const Polygons& region);
-  void keep(const Question& question, const Polygons& region, const Route& route);
+  /// The route of a region: plans it unless an equal region has been planned for an equal question.
+  /// Who asks for what another thread is planning sleeps until that is done, or plans it itself if
+  /// that has failed; so `plan` must not ask the memo.
+  /// Throws what plan throws.
+  /// Cost   linear in the region's vertices.
+  [[nodiscard]] std::shared_ptr<const Route> route(const Question& question, const Polygons& region,
+                                                   const std::function<Route()>& plan);
 
  private:
   struct Entry {
     Question question;
     Polygons region;
-    Route route;
+    std::mutex planning;
+    std::shared_ptr<const Route> route;  ///< nothing until it is planned
   };
 
+  Entry& entry_of(const Question& question, const Polygons& region);
+
   std::mutex mutex_;
-  std::unordered_multimap<std::uint64_t, Entry> entries_;  ///< by a hash of the region
+  std::unordered_multimap<std::uint64_t, std::unique_ptr<Entry>> entries_;  ///< by region's hash
 };
 
 }  // namespace routebench

@@ -48,13 +48,14 @@ inline Print random_print(std::uint64_t seed, int layers = 3) {
   return print;
 }
 
-inline std::string gcode_of(const Print& print, const Task& task, const Printer& printer) {
+inline std::string gcode_of(const Print& print, const Task& task, const Printer& printer,
+                            const ParallelFor& parallel_for = serial_for) {
   std::ostringstream out;
   GcodeWriter writer(out, task, printer, {});
   std::vector<RoutedLayer> layers;
   for (std::size_t i = 0; i < print.layers.size(); ++i)
     layers.push_back({&print.layers[i], &print.planned[i]});
-  writer.write_layers(layers);
+  writer.write_layers(layers, parallel_for);
   writer.finish();
   return out.str();
 }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "routebench/geometry/error.hpp"
 #include "routebench/geometry/layer_io.hpp"
 #include "routebench/geometry/solid.hpp"
+#include "routebench/harness/parallel.hpp"
 #include "scratch_dir.hpp"
 
 namespace routebench {
@@ -129,6 +131,15 @@ TEST(PlanLayers, WhatIsTakenOverIsWhatWouldBePlanned) {
         EXPECT_EQ(taken[i].route, planned[i].route) << name << ", place " << i;
         EXPECT_EQ(taken[i].kinds, planned[i].kinds) << name << ", place " << i;
       }
+      const std::vector<std::size_t> original = first_of_equal_routes(contender, model, chosen);
+      std::size_t different = 0;
+      for (std::size_t i = 0; i < planned.size(); ++i) {
+        if (original[i] == i) ++different;
+        EXPECT_EQ(original[original[i]], original[i]);
+        EXPECT_EQ(planned[original[i]].route, planned[i].route) << name << ", place " << i;
+        EXPECT_EQ(planned[original[i]].kinds, planned[i].kinds) << name << ", place " << i;
+      }
+      EXPECT_LT(different, chosen.size()) << name;
     }
   }
 }
@@ -148,11 +159,11 @@ class Counting final : public Planner {
     ++calls;
     return {};
   }
-  static inline std::size_t calls = 0;
+  static inline std::atomic<std::size_t> calls = 0;
 };
 
 template <int every>
-std::size_t calls_for_tower(Repeats repeats) {
+std::size_t calls_for_tower(Repeats repeats, const ParallelFor& parallel_for = serial_for) {
   Registry registry;
   registry.add<Counting<every>>();
   Task task;
@@ -162,7 +173,7 @@ std::size_t calls_for_tower(Repeats repeats) {
                             registry);
   Counting<every>::calls = 0;
   static_cast<void>(
-      plan_layers(contender, model, all_layers(model.sliced), task, 1, {}, serial_for, repeats));
+      plan_layers(contender, model, all_layers(model.sliced), task, 1, {}, parallel_for, repeats));
   return Counting<every>::calls;
 }
 
@@ -172,6 +183,7 @@ TEST(PlanLayers, RegionsOfEqualLayersArePlannedOnce) {
   EXPECT_EQ(calls_for_tower<0>(Repeats::kTakeOver), 28U);
   EXPECT_EQ(calls_for_tower<1>(Repeats::kTakeOver), 3U);
   EXPECT_EQ(calls_for_tower<2>(Repeats::kTakeOver), 6U);
+  EXPECT_EQ(calls_for_tower<2>(Repeats::kTakeOver, parallel_loop(4)), 6U);
 }
 
 }  // namespace

@@ -147,6 +147,23 @@ TEST_F(PlanCommand, WithoutJudgingTheRoutesAreTheSameAndNothingIsClaimed) {
   EXPECT_EQ(table.out.find("Travel"), std::string::npos);
 }
 
+TEST_F(PlanCommand, PlatesOfEqualLayersAreWrittenAsIfEachLayerWerePlanned) {
+  for (const std::vector<std::string>& more :
+       {std::vector<std::string>{}, {"--layers", "1,4..30"}, {"--printer", "lift_mm=0.3"}}) {
+    const auto gcode_of = [&](std::vector<std::string> options) {
+      options.insert(options.end(), more.begin(), more.end());
+      options.insert(options.end(), {"--gcode", in_folder("plate.gcode")});
+      const ProgramRun run = plan("shape:islands?count=5&size=25&height=8", options);
+      EXPECT_LE(run.exit_code, 1) << run.err;
+      return test::content_of(in_folder("plate.gcode"));
+    };
+    const std::string judged = gcode_of({"--jobs", "1"});
+    EXPECT_GT(judged.size(), 10000u);
+    for (const char* jobs : {"1", "2", "4"})
+      EXPECT_TRUE(gcode_of({"--no-judge", "--jobs", jobs}) == judged) << jobs << " jobs";
+  }
+}
+
 TEST_F(PlanCommand, ChosenLayersAreThoseOfTheWholeModel) {
   const json all = without_times(plan(kModel, {"--json", "-"}).json());
   const json some = without_times(plan(kModel, {"--json", "-", "--layers", "10..12,3"}).json());

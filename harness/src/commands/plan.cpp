@@ -3,6 +3,7 @@
 #include <iostream>
 #include <limits>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <variant>
@@ -127,16 +128,14 @@ class Plan {
       placed_ =
           place_print(*print, model_, chosen_, offset_, judge_.task().line_width_mm, parallel_for_);
       planned_ = placed_->layers;
+      for (const PlannedLayer& layer : planned_) routes_.push_back(&layer);
       print_warnings(arguments_.from_gcode, print->warnings);
       return true;
     }
     Outcome outcome = Outcome::kFailed;
     std::string reason;
     try {
-      // Times are looked at only together with scores.
-      planned_ = plan_layers(std::get<Contender>(*source_), model_, chosen_, judge_.task(),
-                             arguments_.seed, {}, parallel_for_,
-                             arguments_.no_judge ? Repeats::kTakeOver : Repeats::kPlan);
+      plan_with(std::get<Contender>(*source_));
     } catch (const PlannerDied& death) {
       outcome = Outcome::kCrashed;
       reason = death.what();
@@ -144,12 +143,28 @@ class Plan {
       // A planner that breaks its contract is a result like any other.
       reason = error.what();
     }
-    if (planned_.size() != chosen_.size()) {
+    if (routes_.size() != chosen_.size()) {
       std::cerr << "routebench: " << arguments_.model << ": " << reason << '\n';
       cell_ = {.layers = {}, .totals = {}, .verdict = {outcome, reason}};
       return false;
     }
     return true;
+  }
+
+  /// Plans each layer; or equal ones once, where no times are asked for.
+  void plan_with(const Contender& contender) {
+    const bool once = arguments_.no_judge;
+    std::vector<std::size_t> original(chosen_.size());
+    std::iota(original.begin(), original.end(), std::size_t{0});
+    if (once) original = first_of_equal_routes(contender, model_, chosen_);
+    std::vector<std::size_t> different;
+    for (std::size_t i = 0; i < chosen_.size(); ++i)
+      if (original[i] == i) different.push_back(chosen_[i]);
+    planned_ = plan_layers(contender, model_, different, judge_.task(), arguments_.seed, {},
+                           parallel_for_, once ? Repeats::kTakeOver : Repeats::kPlan);
+    auto next = planned_.cbegin();
+    for (std::size_t i = 0; i < chosen_.size(); ++i)
+      routes_.push_back(original[i] == i ? &*next++ : routes_[original[i]]);
   }
 
   void judge() {
@@ -180,7 +195,7 @@ class Plan {
       GcodeWriter writer(out, judge_.task(), judge_.printer(), comments);
       std::vector<RoutedLayer> layers;
       for (std::size_t i = 0; i < chosen_.size(); ++i)
-        layers.push_back({&model_.sliced.layers[chosen_[i]], &planned_[i]});
+        layers.push_back({&model_.sliced.layers[chosen_[i]], routes_[i]});
       writer.write_layers(layers, parallel_for_);
       writer.finish();
     });
@@ -192,8 +207,8 @@ class Plan {
     for (std::size_t i = 0; i < chosen_.size(); ++i) {
       const Layer& layer = model_.sliced.layers[chosen_[i]];
       outputs.add(layer_picture(arguments_.svg, layer.index),
-                  [&](std::ostream& out) { write_route_svg(out, layer, planned_[i], nozzle); });
-      if (const auto end = end_of(planned_[i].route)) nozzle = end;
+                  [&](std::ostream& out) { write_route_svg(out, layer, *routes_[i], nozzle); });
+      if (const auto end = end_of(routes_[i]->route)) nozzle = end;
     }
   }
 
@@ -229,7 +244,8 @@ class Plan {
   std::vector<std::size_t> chosen_;
   std::optional<PlacedPrint> placed_;  // if the strokes are those of a file
   std::vector<PlannedLayer> planned_;
-  std::optional<JudgedCell> cell_;  // nothing if it is not to be judged
+  std::vector<const PlannedLayer*> routes_;  // of the chosen layers, among planned_
+  std::optional<JudgedCell> cell_;           // nothing if it is not to be judged
 };
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <stop_token>
 #include <string>
@@ -60,11 +61,18 @@ struct PlanTime {
   std::int64_t cpu_ns = 0;  ///< of the thread, or of the planner's own process
 };
 
+/// Consecutive strokes of a layer: what one call of a planner made.
+struct PlannedPart {
+  std::size_t strokes;
+  std::shared_ptr<const Route> shared;  ///< the same for layers that have it in common, or nothing
+};
+
 struct PlannedLayer {
   Route route;
   std::vector<StrokeKind> kinds;  ///< one a stroke
   std::int64_t plan_wall_ns = 0;  ///< inside plan() alone, summed over its calls; see timed_plan
   std::int64_t plan_cpu_ns = 0;
+  std::vector<PlannedPart> parts = {};  ///< of the route; nothing if it is not known
 };
 
 class PlanMemo;
@@ -95,6 +103,12 @@ class Contender {
   /// The most memory that planning has taken so far: of this process, or of a planner's own process
   /// if that took more.
   [[nodiscard]] double peak_rss_bytes() const;
+
+  /// After how many layers its planners promise to repeat themselves; 0 if any of them does not.
+  /// See PlannerInfo::repeats_every.
+  [[nodiscard]] int repeats_every() const {
+    return std::lcm(shell_ ? shell_repeats_every_ : 1, fill_ ? fill_repeats_every_ : 1);
+  }
 
   [[nodiscard]] const ContenderSpec& spec() const noexcept { return spec_; }
   /// The slots' parameters, all of them.

@@ -16,6 +16,7 @@
 namespace routebench {
 
 struct GcodeDialect;
+struct LayerPart;
 
 /// How far a print has come between two layers.
 struct GcodeProgress {
@@ -56,7 +57,8 @@ class GcodeWriter {
   /// Layers come in ascending order, in one call or in several; a layer without strokes writes
   /// nothing. They are formatted at the same time and written in their order: the bytes depend
   /// neither on the loop nor on how layers are spread over calls.
-  /// Cost linear in the points; the text of some layers is in memory at a time.
+  /// Cost linear in the points; parts that equal layers share (PlannedPart::shared) are formatted
+  ///      once. The text of some layers, and of such parts, is in memory at a time.
   void write_layers(std::span<const RoutedLayer> layers,
                     const ParallelFor& parallel_for = serial_for);
 
@@ -64,8 +66,8 @@ class GcodeWriter {
   void finish();
 
  private:
-  /// Moves the progress on behind a layer.
-  void go_on_by(const RoutedLayer& routed);
+  /// Moves the progress on behind a layer with strokes.
+  void go_on_by(const Layer& layer, std::span<const LayerPart> parts);
   void write(std::string_view text);
 
   std::ostream& out_;

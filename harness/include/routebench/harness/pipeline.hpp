@@ -123,6 +123,13 @@ struct PreparedModel {
 /// nothing out.
 [[nodiscard]] std::vector<std::size_t> all_layers(const SlicedModel& sliced);
 
+/// Of each chosen layer the place in `chosen` of the first one that has the same route for sure: an
+/// equal layer with an equal demand, as the contender's planners promise; its own if there is none.
+/// Cost   linear in vertices, times the different demands that equal layers have.
+[[nodiscard]] std::vector<std::size_t> first_of_equal_routes(const Contender& contender,
+                                                             const PreparedModel& model,
+                                                             std::span<const std::size_t> chosen);
+
 /// Whether each region is planned for itself, or takes over the route of one that came in an equal
 /// layer, where its planner promises that its own would be equal (see PlannerInfo::repeats_every).
 enum class Repeats { kPlan, kTakeOver };
@@ -132,7 +139,8 @@ enum class Repeats { kPlan, kTakeOver };
 ///
 /// Takes   places in the model's layers, ascending.
 /// Returns one planned layer for each of them.
-/// Throws  what Contender::plan throws, of the lowest such layer.
+/// Throws  what Contender::plan throws, of the lowest such layer; under kTakeOver the first ones of
+///         equal layers count before the others.
 [[nodiscard]] std::vector<PlannedLayer> plan_layers(
     const Contender& contender, const PreparedModel& model, std::span<const std::size_t> chosen,
     const Task& task, std::uint64_t seed, std::stop_token stop, const ParallelFor& parallel_for,
