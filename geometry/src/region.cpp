@@ -306,7 +306,8 @@ Polygons without_thin_parts(const Polygons& polygons, double width_mm) {
   const double reach_mm = width_mm / 2 - 2 * kCleanMm;
   if (reach_mm <= 0) return polygons;
   const Polygons cores = offset(polygons, -reach_mm);
-  return cores.empty() ? cores : intersect(offset(cores, reach_mm), polygons);
+  // Grown a little farther, for sides that coincide would cross at every corner.
+  return cores.empty() ? cores : intersect(offset(cores, reach_mm + 3 * kCleanMm), polygons);
 }
 
 Polygons unite(const Polygons& a, const Polygons& b) { return clip(cl::ctUnion, a, b); }
