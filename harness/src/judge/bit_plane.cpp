@@ -79,10 +79,7 @@ BitPlane::BitPlane(const SampleGrid& grid, const Polygons& polygons) : BitPlane(
 }
 
 void BitPlane::flip_from(std::size_t row, double left) {
-  // Rounding up by conversion: see visit_words.
-  const double from = std::max(left, 0.0);
-  auto bit = static_cast<std::size_t>(static_cast<std::int64_t>(from));
-  if (static_cast<double>(bit) < from) ++bit;
+  const auto bit = static_cast<std::size_t>(rounded_up(std::max(left, 0.0)));
   if (bit >= grid_->columns()) {
     // Its partner's samples go on to the end of the row.
     used_[row].end = static_cast<std::uint32_t>(row_words_);

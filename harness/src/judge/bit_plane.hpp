@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "judge/rounding.hpp"
 #include "judge/sample_grid.hpp"
 #include "routebench/geometry/types.hpp"
 
@@ -144,12 +145,8 @@ class BitPlane {
   Words visit_words(std::size_t row, double left, double right, Visit&& visit) {
     const double end_step = static_cast<double>(grid_->columns()) - 1;
     if (!(right >= 0 && left <= end_step)) return {};
-    // Rounding by conversion: std::ceil and std::floor are calls on plain processors.
-    const double from = std::max(left, 0.0);
-    auto first = static_cast<std::size_t>(static_cast<std::int64_t>(from));
-    if (static_cast<double>(first) < from) ++first;
-    const auto last =
-        static_cast<std::size_t>(static_cast<std::int64_t>(std::min(right, end_step)));
+    const auto first = static_cast<std::size_t>(rounded_up(std::max(left, 0.0)));
+    const auto last = static_cast<std::size_t>(rounded_down(std::min(right, end_step)));
     if (first > last) return {};
     const Word from_first = ~Word{0} << (first % kWordBits);
     const Word to_last = ~Word{0} >> (kWordBits - 1 - last % kWordBits);

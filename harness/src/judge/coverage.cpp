@@ -7,6 +7,7 @@
 #include "judge/bit_plane.hpp"
 #include "judge/capsule.hpp"
 #include "judge/reach.hpp"
+#include "judge/rounding.hpp"
 #include "judge/sample_grid.hpp"
 #include "judge/samples_left.hpp"
 #include "routebench/geometry/vec.hpp"
@@ -43,8 +44,8 @@ void add_passes(BitPlane& once, BitPlane& twice, const Run& run, const Task& tas
         return;
       }
       // A sample on the rim of the disc belongs to it.
-      once.add_counting(row, bead.left, std::ceil(start.left) - 1, twice);
-      once.add_counting(row, std::floor(start.right) + 1, bead.right, twice);
+      once.add_counting(row, bead.left, static_cast<double>(rounded_up(start.left) - 1), twice);
+      once.add_counting(row, static_cast<double>(rounded_down(start.right) + 1), bead.right, twice);
     };
     visit_capsule_rows(from, grid.to_steps(run.points[i + 1]), radius, grid.rows(), add);
   }
