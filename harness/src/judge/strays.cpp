@@ -1,7 +1,5 @@
 #include "judge/strays.hpp"
 
-#include <optional>
-
 #include "routebench/geometry/vec.hpp"
 
 namespace routebench::judging {
