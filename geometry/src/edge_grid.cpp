@@ -158,6 +158,34 @@ std::vector<double> EdgeGrid::crossings(Point2 a, Point2 b) const {
   return shares;
 }
 
+bool EdgeGrid::meets(Point2 a, Point2 b) const {
+  if (edges_.empty()) return false;
+  const auto [left, right] = std::minmax({a.x, b.x});
+  const auto [lower, upper] = std::minmax({a.y, b.y});
+  // Whether both points lie on one side of line pq, further from it than what is on it.
+  const auto on_one_side = [](Point2 p, Point2 q, Point2 first, Point2 second) {
+    const Point2 way = q - p;
+    const double on_line = kOnEdgeMm * 2 * std::max(std::abs(way.x), std::abs(way.y));
+    const double side = cross(way, first - p);
+    const double other = cross(way, second - p);
+    return (side > on_line && other > on_line) || (side < -on_line && other < -on_line);
+  };
+  bool met = false;
+  visit_cells(a, b, kOnEdgeMm, [&](std::int64_t cell) {
+    const auto c = static_cast<std::size_t>(cell);
+    for (std::uint32_t i = cells_.begin[c]; i < cells_.begin[c + 1] && !met; ++i) {
+      const Edge& edge = edges_[cells_.items[i]];
+      if (std::max(edge.a.x, edge.b.x) < left - kOnEdgeMm ||
+          std::min(edge.a.x, edge.b.x) > right + kOnEdgeMm ||
+          std::max(edge.a.y, edge.b.y) < lower - kOnEdgeMm ||
+          std::min(edge.a.y, edge.b.y) > upper + kOnEdgeMm)
+        continue;
+      met = !on_one_side(a, b, edge.a, edge.b) && !on_one_side(edge.a, edge.b, a, b);
+    }
+  });
+  return met;
+}
+
 double EdgeGrid::outside_length_mm(Point2 a, Point2 b) const {
   std::vector<double> shares = crossings(a, b);
   const double length = distance(a, b);

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <utility>
 
+#include "judge/alike.hpp"
 #include "plan_memo.hpp"
 #include "routebench/geometry/error.hpp"
 #include "routebench/geometry/layer_io.hpp"
@@ -259,23 +260,35 @@ JudgedCell judge_layers(const Judge& judge, const PreparedModel& model,
                         const ParallelFor& parallel_for) {
   // Where each layer is entered from is known before any is judged, so that they can be judged at
   // the same time.
-  std::vector<std::optional<Point2>> entered_from(planned.size());
+  std::vector<judging::LayerCase> cases;
+  cases.reserve(planned.size());
   std::optional<Point2> nozzle;
   for (std::size_t i = 0; i < planned.size(); ++i) {
-    entered_from[i] = nozzle;
+    cases.push_back({&model.demands[chosen[i]], &planned[i].route, nozzle});
     if (const auto end = end_of(planned[i].route)) nozzle = end;
   }
-  const std::size_t wall_ns = metric_index("plan_wall_ns");
-  const std::size_t cpu_ns = metric_index("plan_cpu_ns");
+  const std::vector<std::size_t> first = judging::first_alike(cases);
   JudgedCell cell;
   cell.layers.resize(planned.size());
   parallel_for(planned.size(), [&](std::size_t i) {
+    if (first[i] == i)
+      cell.layers[i] = judge.score(model.sliced.layers[chosen[i]], *cases[i].demand,
+                                   *cases[i].route, cases[i].entered_from);
+  });
+  const std::size_t wall_ns = metric_index("plan_wall_ns");
+  const std::size_t cpu_ns = metric_index("plan_cpu_ns");
+  for (std::size_t i = 0; i < planned.size(); ++i) {
     LayerScore& score = cell.layers[i];
-    score = judge.score(model.sliced.layers[chosen[i]], model.demands[chosen[i]], planned[i].route,
-                        entered_from[i]);
+    if (first[i] != i) {
+      const Layer& layer = model.sliced.layers[chosen[i]];
+      score = cell.layers[first[i]];
+      score.layer_index = layer.index;
+      score.z_mm = layer.z_mm;
+      score.repaired = layer.repaired;
+    }
     score.scores[wall_ns] = static_cast<double>(planned[i].plan_wall_ns);
     score.scores[cpu_ns] = static_cast<double>(planned[i].plan_cpu_ns);
-  });
+  }
   cell.totals = judge.total(cell.layers);
   cell.verdict = judge.verdict(cell.totals);
   return cell;

@@ -6,6 +6,8 @@
 #include "judge/coverage.hpp"
 #include "judge/layer_samples.hpp"
 #include "judge/run.hpp"
+#include "judge/strays.hpp"
+#include "routebench/geometry/edge_grid.hpp"
 #include "routebench/harness/contender.hpp"
 #include "routebench/harness/demand.hpp"
 #include "routebench/harness/judge.hpp"
@@ -62,10 +64,12 @@ BENCHMARK(judge_layer)->ArgName("percent")->Arg(20)->Arg(100)->Unit(benchmark::k
 void cover_layer(benchmark::State& state) {
   const Case layer(density_of(state));
   const std::vector<judging::Run> runs = judging::runs_of(layer.plan().route, layer.task.join_mm);
+  const EdgeGrid outline(layer.demand.outline);
   for (auto _ : state) {
     const judging::LayerSamples samples(layer.demand, layer.task);
-    benchmark::DoNotOptimize(judging::measure_coverage(samples, samples.outline.count(),
-                                                       layer.demand, runs, layer.task));
+    const judging::Strays strays = judging::strays_of(runs, outline, layer.task.line_width_mm);
+    benchmark::DoNotOptimize(judging::measure_coverage(
+        samples, samples.outline.count(), layer.demand, runs, strays.beads, layer.task));
   }
 }
 BENCHMARK(cover_layer)->ArgName("percent")->Arg(20)->Arg(100)->Unit(benchmark::kMillisecond);

@@ -79,6 +79,11 @@ TEST(EdgeGrid, AgreesWithSlowAnswersOnRandomPolygons) {
             (cross(q - p, a - p) > 0) != (cross(q - p, b - p) > 0))
           ++proper;
       EXPECT_EQ(grid.crossings(a, b).size(), proper);
+      EXPECT_TRUE(grid.meets(a, b) || proper == 0);
+      const Point2 c = lerp(a, b, 0.02);
+      if (slow_distance(edges, a) > 2 * distance(a, c)) {
+        EXPECT_FALSE(grid.meets(a, c));
+      }
     }
   }
 }
@@ -87,6 +92,12 @@ TEST(EdgeGrid, BoundaryBelongsToThePolygons) {
   const EdgeGrid grid({{rectangle(0, 0, 10, 10), {}}});
   for (const Point2 p : {Point2{0, 0}, Point2{10, 10}, Point2{5, 0}, Point2{10, 3}, Point2{0, 10}})
     EXPECT_TRUE(grid.contains(p));
+  for (const Point2 p : {Point2{5, 10}, Point2{10, 3}, Point2{0, 0}}) {
+    EXPECT_TRUE(grid.meets({5, 5}, p)) << "an end on the boundary";
+    EXPECT_TRUE(grid.meets(p, p));
+  }
+  EXPECT_TRUE(grid.meets({2, 10}, {8, 10})) << "along it";
+  EXPECT_FALSE(grid.meets({2, 9.999}, {8, 9.999}));
   EXPECT_FALSE(grid.contains({10.001, 3}));
   EXPECT_FALSE(grid.contains({5, -0.001}));
   EXPECT_TRUE(grid.covers({0, 0}, {10, 0}));

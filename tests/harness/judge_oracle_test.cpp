@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 #include <random>
+#include <span>
 #include <vector>
 
 #include "judge/bit_plane.hpp"
@@ -16,9 +17,11 @@
 #include "judge/coverage.hpp"
 #include "judge/layer_samples.hpp"
 #include "judge/outline.hpp"
+#include "judge/reach.hpp"
 #include "judge/run.hpp"
 #include "judge/sample_grid.hpp"
 #include "judge/samples_left.hpp"
+#include "judge/strays.hpp"
 #include "random_polygons.hpp"
 #include "routebench/geometry/grid.hpp"
 #include "routebench/geometry/vec.hpp"
@@ -211,9 +214,10 @@ TEST(JudgeOracle, CapsulesTakeAwayWhatTheyWouldAdd) {
   std::uniform_real_distribution<double> x(box.lower.x, box.upper.x);
   std::uniform_real_distribution<double> y(box.lower.y, box.upper.y);
   constexpr int kEnoughForAll = 20000;
+  using Word = judging::BitPlane::Word;
   for (const int count : {1, 300, kEnoughForAll}) {
     judging::BitPlane added(grid);
-    judging::SamplesLeft left(all);
+    judging::SamplesLeft left(judging::BitPlane(all, [](Word p) { return p; }));
     for (int i = 0; i < count; ++i) {
       const Point2 a{x(random), y(random)};
       const Point2 b = lerp(a, {x(random), y(random)}, 0.05);
@@ -222,7 +226,6 @@ TEST(JudgeOracle, CapsulesTakeAwayWhatTheyWouldAdd) {
           [&](std::size_t row, judging::Span span) { added.add(row, span.left, span.right); });
       left.remove(a, b, 0.4);
     }
-    using Word = judging::BitPlane::Word;
     EXPECT_EQ(left.count(), all.count([](Word p, Word q) { return p & ~q; }, added)) << count;
     EXPECT_EQ(left.count() == 0, count == kEnoughForAll);
   }
@@ -348,19 +351,124 @@ TEST(JudgeOracle, AveragesAgreeWithTheirDefinition) {
         plain[r][c] = static_cast<double>(random() % 100);
         field.at(c, r) = static_cast<float>(plain[r][c]);
       }
-    field.average(reach);
+    // All cells of a row, some or none.
+    std::vector<judging::Columns> wanted;
+    for (std::size_t r = 0; r < rows; ++r) {
+      const auto [first, end] = std::minmax({static_cast<std::size_t>(random() % columns),
+                                             static_cast<std::size_t>(random() % columns)});
+      wanted.push_back(r % 3 == 0 ? judging::Columns{0, columns} : judging::Columns{first, end});
+    }
+    judging::NeighbourhoodMeans means(field, reach, wanted);
     const auto weight = [reach](std::size_t i, std::size_t k) {
       const double d = std::abs(static_cast<double>(i) - static_cast<double>(k));
       return std::max(0.0, static_cast<double>(reach) - d) / static_cast<double>(reach * reach);
     };
-    for (std::size_t r = 0; r < rows; ++r)
-      for (std::size_t c = 0; c < columns; ++c) {
+    for (std::size_t r = 0; r < rows; ++r) {
+      const std::span<const float> row = means.row(r);
+      ASSERT_EQ(row.size(), wanted[r].end - wanted[r].first);
+      for (std::size_t c = wanted[r].first; c < wanted[r].end; ++c) {
         double mean = 0;
         for (std::size_t i = 0; i < rows; ++i)
           for (std::size_t k = 0; k < columns; ++k)
             mean += weight(r, i) * weight(c, k) * plain[i][k];
-        EXPECT_NEAR(static_cast<double>(field.at(c, r)), mean, 1e-4);
+        EXPECT_NEAR(static_cast<double>(row[c - wanted[r].first]), mean, 1e-4);
       }
+    }
+  }
+}
+
+TEST(JudgeOracle, PlanesBeginEmptyWhateverThoseBeforeHeld) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    const Polygons polygons = test::random_polygons(seed, 6, 10);
+    // Without a margin: rows that are inside up to their ends.
+    const judging::SampleGrid grid(polygons, 0, 0.11 / static_cast<double>(seed), 1e6);
+    const judging::BitPlane empty(grid);
+    EXPECT_EQ(empty.count([](auto) { return ~judging::BitPlane::Word{0}; }), 0U);
+    for (std::size_t row = 0; row < grid.rows(); ++row)
+      EXPECT_TRUE(std::all_of(empty.row(row), empty.row(row) + (grid.columns() + 63) / 64,
+                              [](auto word) { return word == 0; }));
+    judging::BitPlane plane(grid, polygons);
+    judging::BitPlane twice(grid);
+    for (std::size_t row = 0; row < grid.rows(); ++row) {
+      plane.add(row, 3, 90);
+      plane.add_counting(row, 40, 1e9, twice);
+    }
+    EXPECT_GT(twice.count(), 0U);
+  }
+}
+
+TEST(JudgeOracle, StraysAloneAreHollowOrSpilled) {
+  Task task;
+  task.density = 1;
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    SCOPED_TRACE(seed);
+    const Layer layer = layer_of(test::random_polygons(seed, 5, 20));
+    const Demand demand = demand_of(layer, task);
+    // Walls, one of them too wide, and strokes from corner to corner.
+    Route route = random_route(seed, 10, layer.polygons);
+    test::append(route, test::walls(layer.polygons, task));
+    route.strokes.back().width_mm *= 1.5;
+    const std::vector<judging::Run> runs = judging::runs_of(route, task.join_mm);
+    const EdgeGrid outline(layer.polygons);
+    const judging::Strays strays = judging::strays_of(runs, outline, task.line_width_mm);
+    double hollow = 0;
+    std::vector<judging::Bead> all;
+    judging::visit_beads(runs, [&](Point2 a, Point2 b, double width_mm) {
+      hollow += outline.outside_length_mm(a, b);
+      all.push_back({a, b, width_mm});
+    });
+    EXPECT_EQ(strays.hollow_mm, hollow);
+    EXPECT_GT(hollow, 0);
+    EXPECT_LT(strays.beads.size(), all.size());
+    const judging::LayerSamples samples(demand, task);
+    const auto measure = [&](const std::vector<judging::Bead>& beads) {
+      return judging::measure_coverage(samples, samples.outline.count(), demand, runs, beads, task);
+    };
+    EXPECT_EQ(measure(strays.beads).spilled, measure(all).spilled);
+  }
+}
+
+TEST(JudgeOracle, SparseReachAgreesWithPoints) {
+  const Task task;
+  const double reach = task.spacing_mm() / task.density;
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    SCOPED_TRACE(seed);
+    const Layer layer = layer_of(test::random_polygons(seed, 4, 40));
+    const Demand demand = demand_of(layer, task);
+    // So much that all is in reach, or so few lines that it is not.
+    const bool plenty = seed % 2 == 0;
+    Route route = test::lines(demand.sparse, {(plenty ? 0.5 : 3) * reach, 0.3}, task.line_width_mm);
+    if (plenty) test::append(route, test::loops(demand.sparse, task.line_width_mm));
+    const std::vector<judging::Run> runs = judging::runs_of(route, task.join_mm);
+    const judging::LayerSamples samples(demand, task);
+    ASSERT_GT(samples.sparse.count(), 0U);
+    const double share =
+        judging::sparse_share_reached(samples, samples.sparse.count(), demand.sparse, runs, task);
+    const EdgeGrid part(demand.sparse);
+    const Box2 box = bounding_box(demand.sparse);
+    std::mt19937_64 random(seed);
+    std::uniform_real_distribution<double> x(box.lower.x, box.upper.x);
+    std::uniform_real_distribution<double> y(box.lower.y, box.upper.y);
+    int points = 0;
+    int reached = 0;
+    for (int i = 0; i < 20000; ++i) {
+      const Point2 p{x(random), y(random)};
+      if (!part.contains(p)) continue;
+      double nearest = std::numeric_limits<double>::infinity();
+      judging::visit_beads(runs, [&](Point2 a, Point2 b, double) {
+        nearest = std::min(nearest, distance(p, nearest_on_segment(p, a, b)));
+      });
+      ++points;
+      reached += nearest <= reach ? 1 : 0;
+      // What is all in reach to the samples is so to the point, but for what they slip through.
+      if (share == 1) {
+        EXPECT_LE(nearest, reach + reach / 16);
+      }
+    }
+    EXPECT_EQ(share == 1, plenty);
+    const double exact = static_cast<double>(reached) / points;
+    const double error = std::sqrt(exact * (1 - exact) / points);  // of drawing by lot
+    EXPECT_NEAR(share, exact, 4 * error + 1e-3);
   }
 }
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "judge/alike.hpp"
 #include "polygons.hpp"
 #include "routebench/geometry/error.hpp"
 #include "routebench/geometry/layer_io.hpp"
@@ -184,6 +185,45 @@ TEST(PlanLayers, RegionsOfEqualLayersArePlannedOnce) {
   EXPECT_EQ(calls_for_tower<1>(Repeats::kTakeOver), 3U);
   EXPECT_EQ(calls_for_tower<2>(Repeats::kTakeOver), 6U);
   EXPECT_EQ(calls_for_tower<2>(Repeats::kTakeOver, parallel_loop(4)), 6U);
+}
+
+TEST(JudgeLayers, EqualLayersGetWhatEachWouldGetAlone) {
+  const Task task;
+  PreparedModel model = prepared_tower(task);
+  Registry registry;
+  register_builtin_planners(registry);
+  const Contender contender(
+      {.name = "both", .shell = SlotSpec{"greedy_shell", {}}, .fill = SlotSpec{"rectilinear", {}}},
+      registry);
+  const std::vector<std::size_t> all = all_layers(model.sliced);
+  std::vector<PlannedLayer> planned =
+      plan_layers(contender, model, all, task, 1, {}, serial_for, Repeats::kPlan);
+  // Layers that are equal but for one thing each: a point, a width, a skin, how they are marked.
+  planned[11].route.strokes.back().points.back().x += 0.5;
+  planned[13].route.strokes.back().width_mm *= 2;
+  std::swap(model.demands[15].dense, model.demands[15].sparse);
+  model.sliced.layers[16].repaired = true;
+
+  const Judge judge(task, {});
+  const JudgedCell cell = judge_layers(judge, model, all, planned, serial_for);
+  std::vector<judging::LayerCase> cases;
+  std::optional<Point2> nozzle;
+  for (const std::size_t i : all) {
+    SCOPED_TRACE(i);
+    LayerScore alone =
+        judge.score(model.sliced.layers[i], model.demands[i], planned[i].route, nozzle);
+    alone.scores[metric_index("plan_wall_ns")] = static_cast<double>(planned[i].plan_wall_ns);
+    alone.scores[metric_index("plan_cpu_ns")] = static_cast<double>(planned[i].plan_cpu_ns);
+    EXPECT_EQ(cell.layers[i], alone);
+    cases.push_back({&model.demands[i], &planned[i].route, nozzle});
+    nozzle = alone.end;
+  }
+  // Lines turn from layer to layer.
+  const std::vector<std::size_t> first = judging::first_alike(cases);
+  EXPECT_EQ(first[18], 10U);
+  EXPECT_EQ(first[24], 2U);
+  EXPECT_EQ(first[25], 1U);
+  for (const std::size_t own : {9U, 11U, 12U, 13U, 15U}) EXPECT_EQ(first[own], own);
 }
 
 }  // namespace

@@ -4,9 +4,36 @@
 #include <utility>
 
 namespace routebench::judging {
+namespace {
+
+/// Words of planes that are gone, all 0 again: clearing what a plane has used is cheaper than new
+/// memory for the box of each layer.
+std::vector<std::vector<BitPlane::Word>>& cleared_words() {
+  thread_local std::vector<std::vector<BitPlane::Word>> words;
+  return words;
+}
+
+}  // namespace
+
+BitPlane::BitPlane(const SampleGrid& grid)
+    : grid_(&grid), row_words_((grid.columns() + kWordBits - 1) / kWordBits), used_(grid.rows()) {
+  std::vector<std::vector<Word>>& cleared = cleared_words();
+  if (!cleared.empty()) {
+    words_ = std::move(cleared.back());
+    cleared.pop_back();
+  }
+  if (words_.size() < row_words_ * grid.rows()) words_.resize(row_words_ * grid.rows());
+}
+
+BitPlane::~BitPlane() {
+  if (words_.empty()) return;  // moved away
+  for (std::size_t row = 0; row < used_.size(); ++row)
+    visit_row(row, [this](std::size_t i) { words_[i] = 0; });
+  cleared_words().push_back(std::move(words_));
+}
 
 BitPlane::BitPlane(const SampleGrid& grid, const Polygons& polygons) : BitPlane(grid) {
-  if (words_.empty() || polygons.empty()) return;
+  if (used_.empty() || polygons.empty()) return;
   // Every edge flips its rows from where it crosses them onwards: what is flipped an odd number of
   // times is inside. The flips are kept as one bit each and summed along the rows at the end.
   const auto add_edge = [this](Point2 a, Point2 b) {
@@ -35,27 +62,32 @@ BitPlane::BitPlane(const SampleGrid& grid, const Polygons& polygons) : BitPlane(
 
   const std::size_t tail = grid_->columns() % kWordBits;
   const Word last_mask = tail == 0 ? ~Word{0} : ~(~Word{0} << tail);
-  for (std::size_t begin = 0; begin < words_.size(); begin += row_words_) {
+  for (std::size_t row = 0; row < used_.size(); ++row) {
     Word carry = 0;  // all ones while inside at a word's end
-    for (std::size_t i = begin; i < begin + row_words_; ++i) {
+    visit_row(row, [&](std::size_t i) {
       Word word = words_[i];
       if (word == 0) {  // nothing changes here
         words_[i] = carry;
-        continue;
+        return;
       }
       for (unsigned shift = 1; shift < kWordBits; shift *= 2) word ^= word << shift;
       words_[i] = word ^ carry;
       carry = (words_[i] >> (kWordBits - 1) & 1U) != 0 ? ~Word{0} : 0;
-    }
-    words_[begin + row_words_ - 1] &= last_mask;
+    });
+    if (used_[row].end == row_words_) words_[(row + 1) * row_words_ - 1] &= last_mask;
   }
 }
 
 void BitPlane::flip_from(std::size_t row, double left) {
-  const double column = std::max(std::ceil(left), 0.0);
-  if (column >= static_cast<double>(grid_->columns())) return;
-  const auto bit = static_cast<std::size_t>(column);
-  words_[row * row_words_ + bit / kWordBits] ^= Word{1} << (bit % kWordBits);
+  const auto bit = static_cast<std::size_t>(rounded_up(std::max(left, 0.0)));
+  if (bit >= grid_->columns()) {
+    // Its partner's samples go on to the end of the row.
+    used_[row].end = static_cast<std::uint32_t>(row_words_);
+    return;
+  }
+  const auto word = static_cast<std::uint32_t>(bit / kWordBits);
+  use(row, {word, word + 1});
+  words_[row * row_words_ + word] ^= Word{1} << (bit % kWordBits);
 }
 
 std::size_t BitPlane::count() const {

@@ -4,38 +4,67 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
+#include "judge/rounding.hpp"
 #include "judge/sample_grid.hpp"
 #include "routebench/geometry/types.hpp"
 
 namespace routebench::judging {
 
 /// Samples of one grid, 64 in a word, rows beginning at a word. The grid must outlive the plane.
+///
+/// Of every row a plane knows between which words it may have samples: all but making it for the
+/// first time on a thread costs no more than what lies between.
 class BitPlane {
  public:
   using Word = std::uint64_t;
   static constexpr std::size_t kWordBits = 64;
 
-  explicit BitPlane(const SampleGrid& grid)
-      : grid_(&grid),
-        row_words_((grid.columns() + kWordBits - 1) / kWordBits),
-        words_(row_words_ * grid.rows()) {}
+  /// Words of a row, from the first to before the end.
+  struct Words {
+    std::uint32_t first = std::numeric_limits<std::uint32_t>::max();
+    std::uint32_t end = 0;
+
+    [[nodiscard]] bool empty() const noexcept { return first >= end; }
+  };
+
+  explicit BitPlane(const SampleGrid& grid);
 
   /// The samples inside polygons. Cost linear in the samples' words and the rows that edges cross.
   BitPlane(const SampleGrid& grid, const Polygons& polygons);
 
+  /// The samples of a plane for which `word_of(word of it, word of others...)` is set; all planes
+  /// are of the same grid.
+  template <typename Combine, typename... Planes>
+  BitPlane(const BitPlane& plane, Combine&& word_of, const Planes&... others)
+      : BitPlane(*plane.grid_) {
+    for (std::size_t row = 0; row < plane.used_.size(); ++row) {
+      used_[row] = plane.used_[row];
+      plane.visit_row(row, [&](std::size_t i) {
+        words_[i] = plane.words_[i] & word_of(plane.words_[i], others.words_[i]...);
+      });
+    }
+  }
+
+  BitPlane(BitPlane&&) noexcept = default;
+  BitPlane& operator=(BitPlane&&) = delete;
+  ~BitPlane();
+
   [[nodiscard]] const SampleGrid& grid() const noexcept { return *grid_; }
-  [[nodiscard]] std::size_t row_words() const noexcept { return row_words_; }
 
   [[nodiscard]] const Word* row(std::size_t row) const { return words_.data() + row * row_words_; }
+  /// Where row() may have samples.
+  [[nodiscard]] Words used(std::size_t row) const { return used_[row]; }
   [[nodiscard]] bool test(std::size_t column, std::size_t row) const {
     return (words_[row * row_words_ + column / kWordBits] >> (column % kWordBits) & 1U) != 0;
   }
 
   /// Adds the samples of a row from `left` to `right`, both in steps.
   void add(std::size_t row, double left, double right) {
-    visit_words(row, left, right, [this](std::size_t i, Word mask) { words_[i] |= mask; });
+    use(row,
+        visit_words(row, left, right, [this](std::size_t i, Word mask) { words_[i] |= mask; }));
   }
 
   /// Takes the samples away that `add` would add.
@@ -43,44 +72,61 @@ class BitPlane {
     visit_words(row, left, right, [this](std::size_t i, Word mask) { words_[i] &= ~mask; });
   }
 
-  /// Keeps only samples that are in another plane of the same grid, too.
-  void keep(const BitPlane& other) {
-    for (std::size_t i = 0; i < words_.size(); ++i) words_[i] &= other.words_[i];
-  }
-
-  /// Takes the samples of another plane of the same grid away.
-  void remove(const BitPlane& other) {
-    for (std::size_t i = 0; i < words_.size(); ++i) words_[i] &= ~other.words_[i];
-  }
-
   /// Adds samples as `add` does; those that were there already are added to `again` as well.
   void add_counting(std::size_t row, double left, double right, BitPlane& again) {
-    visit_words(row, left, right, [this, &again](std::size_t i, Word mask) {
-      again.words_[i] |= words_[i] & mask;
-      words_[i] |= mask;
-    });
+    Word met = 0;
+    const Words words =
+        visit_words(row, left, right, [this, &again, &met](std::size_t i, Word mask) {
+          // Most samples are passed once: the other plane's memory is left alone.
+          if (const Word both = words_[i] & mask; both != 0) {
+            again.words_[i] |= both;
+            met |= both;
+          }
+          words_[i] |= mask;
+        });
+    use(row, words);
+    if (met != 0) again.use(row, words);
   }
 
   [[nodiscard]] std::size_t count() const;
 
-  /// Number of samples for which `word_of(word of this, word of others...)` is set.
+  /// Number of samples here for which `word_of(word of this, word of others...)` is set.
   template <typename Combine, typename... Planes>
   [[nodiscard]] std::size_t count(Combine&& word_of, const Planes&... others) const {
     // Counting the bits of a word is a call on plain processors; counts of bytes are added up for
     // some words together, which compilers turn into vector instructions.
     constexpr std::size_t kTogether = 16;  // up to 31: a byte holds 255
     std::size_t set = 0;
-    for (std::size_t i = 0; i < words_.size();) {
-      const std::size_t end = std::min(i + kTogether, words_.size());
-      Word bytes = 0;
-      for (; i < end; ++i) bytes += bits_of_bytes(word_of(words_[i], others.words_[i]...));
-      set += sum_of_bytes(bytes);
+    for (std::size_t row = 0; row < used_.size(); ++row) {
+      if (used_[row].empty()) continue;
+      const std::size_t row_end = row * row_words_ + used_[row].end;
+      for (std::size_t i = row * row_words_ + used_[row].first; i < row_end;) {
+        const std::size_t end = std::min(i + kTogether, row_end);
+        Word bytes = 0;
+        for (; i < end; ++i)
+          bytes += bits_of_bytes(words_[i] & word_of(words_[i], others.words_[i]...));
+        set += sum_of_bytes(bytes);
+      }
     }
     return set;
   }
 
  private:
   void flip_from(std::size_t row, double left);
+
+  void use(std::size_t row, Words words) {
+    Words& used = used_[row];
+    used.first = std::min(used.first, words.first);
+    used.end = std::max(used.end, words.end);
+  }
+
+  /// Calls visit(place of a word) for a row's words that may have samples.
+  template <typename Visit>
+  void visit_row(std::size_t row, Visit&& visit) const {
+    const std::size_t end = row * row_words_ + used_[row].end;
+    if (used_[row].empty()) return;
+    for (std::size_t i = row * row_words_ + used_[row].first; i < end; ++i) visit(i);
+  }
 
   /// How many bits each byte of a word has.
   [[nodiscard]] static constexpr Word bits_of_bytes(Word word) noexcept {
@@ -93,34 +139,35 @@ class BitPlane {
     return static_cast<std::size_t>(bytes * 0x0001000100010001U >> 48);
   }
 
-  /// Calls visit(place of a word, mask) for the samples of a row from `left` to `right`.
+  /// Calls visit(place of a word, mask) for the samples of a row from `left` to `right`; returns
+  /// their words.
   template <typename Visit>
-  void visit_words(std::size_t row, double left, double right, Visit&& visit) {
+  Words visit_words(std::size_t row, double left, double right, Visit&& visit) {
     const double end_step = static_cast<double>(grid_->columns()) - 1;
-    if (!(right >= 0 && left <= end_step)) return;
-    // Rounding by conversion: std::ceil and std::floor are calls on plain processors.
-    const double from = std::max(left, 0.0);
-    auto first = static_cast<std::size_t>(static_cast<std::int64_t>(from));
-    if (static_cast<double>(first) < from) ++first;
-    const auto last =
-        static_cast<std::size_t>(static_cast<std::int64_t>(std::min(right, end_step)));
-    if (first > last) return;
+    if (!(right >= 0 && left <= end_step)) return {};
+    const auto first = static_cast<std::size_t>(rounded_up(std::max(left, 0.0)));
+    const auto last = static_cast<std::size_t>(rounded_down(std::min(right, end_step)));
+    if (first > last) return {};
     const Word from_first = ~Word{0} << (first % kWordBits);
     const Word to_last = ~Word{0} >> (kWordBits - 1 - last % kWordBits);
     const std::size_t begin = row * row_words_ + first / kWordBits;
     const std::size_t end = row * row_words_ + last / kWordBits;
+    const Words words{static_cast<std::uint32_t>(first / kWordBits),
+                      static_cast<std::uint32_t>(last / kWordBits + 1)};
     if (begin == end) {
       visit(begin, from_first & to_last);
-      return;
+      return words;
     }
     visit(begin, from_first);
     for (std::size_t i = begin + 1; i < end; ++i) visit(i, ~Word{0});
     visit(end, to_last);
+    return words;
   }
 
   const SampleGrid* grid_;
   std::size_t row_words_;
-  std::vector<Word> words_;
+  std::vector<Word> words_;  // at least those of the rows; all but the used ones are 0
+  std::vector<Words> used_;  // of each row
 };
 
 }  // namespace routebench::judging

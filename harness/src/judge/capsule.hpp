@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "judge/rounding.hpp"
 #include "routebench/geometry/types.hpp"
 #include "routebench/geometry/vec.hpp"
 
@@ -98,9 +99,9 @@ class CapsuleRows {
 /// All lengths are in steps.
 template <typename Visit>
 void visit_capsule_rows(Point2 a, Point2 b, double radius, std::size_t row_count, Visit&& visit) {
-  const double first = std::max(std::ceil(std::min(a.y, b.y) - radius), 0.0);
-  const double last =
-      std::min(std::floor(std::max(a.y, b.y) + radius), static_cast<double>(row_count) - 1);
+  const auto first = std::max(static_cast<double>(rounded_up(std::min(a.y, b.y) - radius)), 0.0);
+  const auto last = std::min(static_cast<double>(rounded_down(std::max(a.y, b.y) + radius)),
+                             static_cast<double>(row_count) - 1);
   if (!(first <= last)) return;
   const CapsuleRows rows(a, b, radius);
   double y = first;

@@ -6,6 +6,7 @@
 
 #include "judge/layer_samples.hpp"
 #include "judge/run.hpp"
+#include "judge/strays.hpp"
 #include "routebench/harness/demand.hpp"
 #include "routebench/harness/task.hpp"
 
@@ -30,10 +31,10 @@ struct Coverage {
   double spilled = 0;
 };
 
-/// Measures one layer. Takes a layer of `outline_samples` > 0 samples.
-/// Cost   one word operation for 64 samples, two square roots for a row of a bead.
+/// Measures one layer. Takes a layer of `outline_samples` > 0 samples and the strays of its runs.
+/// Cost   one word operation for 64 samples, two or three square roots for a row of a bead.
 [[nodiscard]] Coverage measure_coverage(const LayerSamples& samples, std::size_t outline_samples,
                                         const Demand& demand, const std::vector<Run>& runs,
-                                        const Task& task);
+                                        const std::vector<Bead>& strays, const Task& task);
 
 }  // namespace routebench::judging

@@ -11,6 +11,7 @@
 #include "judge/print_time.hpp"
 #include "judge/run.hpp"
 #include "judge/skipped.hpp"
+#include "judge/strays.hpp"
 #include "judge/travel.hpp"
 #include "routebench/geometry/edge_grid.hpp"
 #include "routebench/geometry/region.hpp"
@@ -86,20 +87,16 @@ void score_time(ScoreSheet& sheet, const std::optional<Travel>& entry, const std
 }
 
 /// Sets what is measured along the beads; returns their volume.
-double score_beads(ScoreSheet& sheet, const std::vector<Run>& runs, const EdgeGrid& outline,
-                   const Task& task) {
+double score_beads(ScoreSheet& sheet, const std::vector<Run>& runs, const Task& task) {
   double length = 0;
   double volume = 0;
-  double hollow = 0;
   judging::visit_beads(runs, [&](Point2 a, Point2 b, double width_mm) {
     const double bead = distance(a, b);
     length += bead;
     volume += bead * task.mean_width_mm(width_mm) * task.layer_height_mm;
-    hollow += outline.outside_length_mm(a, b);
   });
   sheet.set("extrude_mm", length);
   sheet.set("filament_mm3", volume);
-  sheet.set("hollow_mm", hollow);
   sheet.set_count("strokes", runs.size());
   sheet.set_count("sharp_turns", judging::sharp_turns(runs));
   return volume;
@@ -118,7 +115,8 @@ double left_out(const LayerScore& layer, const Demand& demand, double covered, d
 }
 
 void score_areas(ScoreSheet& sheet, const LayerScore& layer, const Demand& demand,
-                 const std::vector<Run>& runs, const Task& task) {
+                 const std::vector<Run>& runs, const std::vector<judging::Bead>& strays,
+                 const Task& task) {
   if (const std::optional<double> share =
           judging::outline_covered(demand.outline, runs, task.line_width_mm))
     sheet.set("outline_covered", *share);
@@ -126,7 +124,7 @@ void score_areas(ScoreSheet& sheet, const LayerScore& layer, const Demand& deman
   const std::size_t outline_samples = samples.outline.count();
   if (outline_samples == 0) return;
   const judging::Coverage coverage =
-      judging::measure_coverage(samples, outline_samples, demand, runs, task);
+      judging::measure_coverage(samples, outline_samples, demand, runs, strays, task);
   const double skipped = judging::skipped_area_mm2(samples, demand, runs, task) /
                          (static_cast<double>(outline_samples) * samples.grid.sample_mm2());
   sheet.set("covered", coverage.covered);
@@ -206,9 +204,11 @@ LayerScore Judge::score(const Layer& layer, const Demand& demand, const Route& r
   const std::vector<Travel> between = judging::travels_between(runs, outline, printer_);
   score_travels(sheet, entry, between, task_.join_mm);
   score_time(sheet, entry, runs, between, printer_);
-  const double filament_mm3 = score_beads(sheet, runs, outline, task_);
+  const double filament_mm3 = score_beads(sheet, runs, task_);
   if (result.demanded_mm3 > 0) sheet.set("deposit", filament_mm3 / result.demanded_mm3);
-  score_areas(sheet, result, demand, runs, task_);
+  const judging::Strays strays = judging::strays_of(runs, outline, task_.line_width_mm);
+  sheet.set("hollow_mm", strays.hollow_mm);
+  score_areas(sheet, result, demand, runs, strays.beads, task_);
   result.scores = std::move(sheet).take();
   return result;
 }

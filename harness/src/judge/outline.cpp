@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <utility>
 
-#include "judge/capsule.hpp"
 #include "routebench/geometry/region.hpp"
 #include "routebench/geometry/vec.hpp"
 
@@ -43,9 +42,9 @@ std::vector<Sample> sample_boundary(const Polygons& polygons, double pitch_mm) {
 }
 
 /// A segment that is asked for its distance to many points.
-class Bead {
+class CentreLine {
  public:
-  Bead(Point2 a, Point2 b)
+  CentreLine(Point2 a, Point2 b)
       : a_(a), run_(b - a), inverse_(dot(run_, run_) > 0 ? 1 / dot(run_, run_) : 0) {}
 
   [[nodiscard]] double squared_distance_to(Point2 p) const {
@@ -76,14 +75,28 @@ class SampleCells {
     std::vector<std::uint32_t> next(begin_.begin(), begin_.end() - 1);
     for (const Sample& sample : samples) samples_[next[cell_of(sample.point)]++] = sample;
     unreached_end_.assign(begin_.begin() + 1, begin_.end());
+    for (std::size_t row = 0; row < rows_; ++row)
+      unreached_in_row_.push_back(begin_[(row + 1) * columns_] - begin_[row * columns_]);
   }
 
   void reach_from(Point2 a, Point2 b) {
-    // Any point within reach lies in a cell whose centre is less than half a diagonal further away.
-    constexpr double kHalfDiagonal = 0.7072;
-    const Bead bead(a, b);
-    visit_capsule_rows(to_cells(a), to_cells(b), reach_mm_ / cell_mm_ + kHalfDiagonal, rows_,
-                       [&](std::size_t row, Span span) { reach_in(row, span, bead); });
+    const CentreLine bead(a, b);
+    const Point2 from = to_cells(a);
+    const Point2 way = to_cells(b) - from;
+    const double reach = reach_mm_ / cell_mm_ + kRounding;
+    const auto [lower, upper] = std::minmax({from.y, from.y + way.y});
+    const std::size_t last_row = place(upper + reach, rows_);
+    for (std::size_t row = place(lower - reach, rows_); row <= last_row; ++row) {
+      if (unreached_in_row_[row] == 0) continue;
+      // Of the bead, what is no higher or lower than its reach over or under the row.
+      const double bottom = static_cast<double>(row) - reach - from.y;
+      const double top = bottom + 1 + 2 * reach;
+      const auto share = [&way](double rise) { return std::clamp(rise / way.y, 0.0, 1.0); };
+      const double enter = way.y == 0 ? 0 : share(bottom);
+      const double leave = way.y == 0 ? 1 : share(top);
+      const auto [left, right] = std::minmax({from.x + enter * way.x, from.x + leave * way.x});
+      reach_in(row, place(left - reach, columns_), place(right + reach, columns_), bead);
+    }
   }
 
   [[nodiscard]] double share_reached() const {
@@ -98,29 +111,30 @@ class SampleCells {
   }
 
  private:
-  /// Cell (i, j) has its centre at (i, j).
-  [[nodiscard]] Point2 to_cells(Point2 p) const {
-    return (1 / cell_mm_) * (p - lower_) - Point2{0.5, 0.5};
+  /// Far below what tells cells apart, far above what arithmetic loses.
+  static constexpr double kRounding = 1e-6;
+
+  [[nodiscard]] Point2 to_cells(Point2 p) const { return (1 / cell_mm_) * (p - lower_); }
+
+  /// The nearest column or row.
+  [[nodiscard]] static std::size_t place(double cells, std::size_t end) {
+    return static_cast<std::size_t>(std::clamp(cells, 0.0, static_cast<double>(end - 1)));
   }
 
   [[nodiscard]] std::size_t cell_of(Point2 p) const {
-    const auto place = [this](double mm, std::size_t end) {
-      return std::min(static_cast<std::size_t>(std::max(mm, 0.0) / cell_mm_), end - 1);
-    };
-    return place(p.y - lower_.y, rows_) * columns_ + place(p.x - lower_.x, columns_);
+    const Point2 cells = to_cells(p);
+    return place(cells.y, rows_) * columns_ + place(cells.x, columns_);
   }
 
-  void reach_in(std::size_t row, Span span, const Bead& bead) {
-    const double first = std::max(std::ceil(span.left), 0.0);
-    const double last = std::min(std::floor(span.right), static_cast<double>(columns_) - 1);
-    if (first > last) return;
-    const std::size_t end = row * columns_ + static_cast<std::size_t>(last) + 1;
-    for (std::size_t cell = row * columns_ + static_cast<std::size_t>(first); cell < end; ++cell)
+  void reach_in(std::size_t row, std::size_t first, std::size_t last, const CentreLine& bead) {
+    for (std::size_t cell = row * columns_ + first; cell <= row * columns_ + last; ++cell)
       for (std::uint32_t i = begin_[cell]; i < unreached_end_[cell];)
-        if (bead.squared_distance_to(samples_[i].point) <= reach_mm_ * reach_mm_)
+        if (bead.squared_distance_to(samples_[i].point) <= reach_mm_ * reach_mm_) {
           std::swap(samples_[i], samples_[--unreached_end_[cell]]);
-        else
+          --unreached_in_row_[row];
+        } else {
           ++i;
+        }
   }
 
   Point2 lower_;
@@ -128,9 +142,10 @@ class SampleCells {
   double cell_mm_ = 1;
   std::size_t columns_ = 0;
   std::size_t rows_ = 0;
-  std::vector<Sample> samples_;               // cell by cell
-  std::vector<std::uint32_t> begin_;          // of cell c: samples_[begin_[c] .. begin_[c + 1])
-  std::vector<std::uint32_t> unreached_end_;  // of cell c: those before it were not reached yet
+  std::vector<Sample> samples_;                  // cell by cell
+  std::vector<std::uint32_t> begin_;             // of cell c: samples_[begin_[c] .. begin_[c + 1])
+  std::vector<std::uint32_t> unreached_end_;     // of cell c: those before it were not reached yet
+  std::vector<std::uint32_t> unreached_in_row_;  // number of samples
 };
 
 }  // namespace

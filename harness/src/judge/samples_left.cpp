@@ -13,11 +13,13 @@ void SamplesLeft::look() {
   none_ = true;
   removals_ = 0;
   for (std::size_t row = 0; row < rows_.size(); ++row) {
-    const BitPlane::Word* words = left_.row(row);
-    const BitPlane::Word* end = words + left_.row_words();
-    const auto any = [](BitPlane::Word word) { return word != 0; };
-    const BitPlane::Word* first = std::find_if(words, end, any);
     rows_[row] = {};
+    const BitPlane::Words used = left_.used(row);
+    if (used.empty()) continue;
+    const BitPlane::Word* words = left_.row(row);
+    const BitPlane::Word* end = words + used.end;
+    const auto any = [](BitPlane::Word word) { return word != 0; };
+    const BitPlane::Word* first = std::find_if(words + used.first, end, any);
     if (first == end) continue;
     none_ = false;
     while (!any(*(end - 1))) --end;

@@ -1,11 +1,12 @@
 #include "judge/skipped.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <span>
+#include <vector>
 
 #include "judge/bit_plane.hpp"
 #include "judge/cell_field.hpp"
@@ -86,19 +87,25 @@ class PartLedger {
                    });
   }
 
-  /// To be asked once, when all is laid.
-  [[nodiscard]] double skipped_area_mm2() {
-    const std::vector<float> own = demanded_.values();
+  [[nodiscard]] double skipped_area_mm2() const {
     const auto cell_mm = grid_.pitch_mm() * static_cast<double>(cell_steps_);
     const auto reach = static_cast<std::size_t>(
         std::max(1.0, std::round(kReachDistances * line_distance_mm_ / cell_mm)));
-    demanded_.average(reach);
-    laid_.average(reach);
+    std::vector<Columns> wanted(demanded_.rows());
+    for (std::size_t row = 0; row < wanted.size(); ++row) wanted[row] = demanded_.occupied(row);
+    NeighbourhoodMeans demanded(demanded_, reach, wanted);
+    NeighbourhoodMeans laid(laid_, reach, wanted);
     double skipped = 0;
-    for (std::size_t i = 0; i < own.size(); ++i)
-      if (own[i] > 0 && static_cast<double>(laid_.values()[i]) <
-                            kLeastShare * static_cast<double>(demanded_.values()[i]))
-        skipped += static_cast<double>(own[i]);
+    for (std::size_t row = 0; row < wanted.size(); ++row) {
+      if (wanted[row].empty()) continue;
+      const std::span<const float> own = demanded_.row(row).subspan(wanted[row].first);
+      const std::span<const float> demanded_near = demanded.row(row);
+      const std::span<const float> laid_near = laid.row(row);
+      for (std::size_t i = 0; i < laid_near.size(); ++i)
+        if (own[i] > 0 &&
+            static_cast<double>(laid_near[i]) < kLeastShare * static_cast<double>(demanded_near[i]))
+          skipped += static_cast<double>(own[i]);
+    }
     return skipped * grid_.sample_mm2();
   }
 
@@ -122,17 +129,28 @@ class PartLedger {
     const std::size_t stride = std::max<std::size_t>(1, cell_steps_ / 2);
     const BitPlane::Word mask = ~BitPlane::Word{0} >> (BitPlane::kWordBits - cell_steps_);
     const std::size_t cells_a_word = BitPlane::kWordBits / cell_steps_;
-    for (std::size_t row = box_.first_row + stride / 2; row < box_.end_row; row += stride)
-      for (std::size_t i = box_.first_column / BitPlane::kWordBits;
-           i * BitPlane::kWordBits < box_.end_column; ++i) {
-        BitPlane::Word word = part_.row(row)[i];
+    for (std::size_t row = box_.first_row + stride / 2; row < box_.end_row; row += stride) {
+      const BitPlane::Words used = part_.used(row);
+      for (std::size_t i = used.first; i < used.end; ++i) {
+        BitPlane::Word word = bits_of_cells(part_.row(row)[i]);
         for (std::size_t cell = i * cells_a_word; word != 0; ++cell) {
-          if (const int set = std::popcount(word & mask); set > 0)
+          if (const BitPlane::Word set = word & mask; set > 0)
             cell_at(demanded_, cell * cell_steps_, row) +=
                 static_cast<float>(static_cast<std::size_t>(set) * stride);
           word = cell_steps_ == BitPlane::kWordBits ? 0 : word >> cell_steps_;
         }
       }
+    }
+  }
+
+  /// How many bits each cell's part of a word has, in its place.
+  [[nodiscard]] BitPlane::Word bits_of_cells(BitPlane::Word word) const {
+    for (std::size_t bits = 1; bits < cell_steps_; bits *= 2) {
+      // Every other field of that many bits.
+      const BitPlane::Word mask = ~BitPlane::Word{0} / ((BitPlane::Word{1} << bits) + 1);
+      word = (word & mask) + (word >> bits & mask);
+    }
+    return word;
   }
 
   /// Calls visit(nearest sample's column, row, length_mm) for pieces of segment ab, each at most

@@ -28,6 +28,10 @@ class EdgeGrid {
   /// each once.
   [[nodiscard]] std::vector<double> crossings(Point2 a, Point2 b) const;
 
+  /// True if the boundary crosses or touches segment ab (within a few grid units): wherever
+  /// crossings() finds a place, at less cost.
+  [[nodiscard]] bool meets(Point2 a, Point2 b) const;
+
   /// True if the whole segment lies inside or on the boundary (within a few grid units).
   [[nodiscard]] bool covers(Point2 a, Point2 b) const;
 

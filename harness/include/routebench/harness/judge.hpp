@@ -26,6 +26,8 @@ struct LayerScore {
   double demanded_mm3 = 0;
   std::optional<Point2>
       end;  ///< where the nozzle is afterwards; nothing if the layer has no stroke
+
+  friend bool operator==(const LayerScore&, const LayerScore&) = default;
 };
 
 /// How a cell ended.
