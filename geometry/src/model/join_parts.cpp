@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "large_vector.hpp"
+#include "model/blocks.hpp"
 
 namespace routebench::models {
 namespace {
@@ -15,11 +16,16 @@ namespace {
 /// Finds equal points while several threads add theirs.
 class SharedWelder {
  public:
-  explicit SharedWelder(std::span<const FloatPoint> points)
+  SharedWelder(std::span<const FloatPoint> points, const ParallelFor& parallel_for)
       : points_(points),
-        slots_(std::bit_ceil(points.size() + points.size() / 2 + 2), 0),
+        slots_(std::bit_ceil(points.size() + points.size() / 2 + 2)),
         mask_(slots_.size() - 1),
-        earlier_(points.size()) {}
+        earlier_(points.size()) {
+    const auto clear = [&](std::size_t, std::size_t begin, std::size_t end) {
+      std::fill(slots_.data() + begin, slots_.data() + end, 0);
+    };
+    for_each_block(slots_.size(), parallel_for, clear);
+  }
 
   /// Adds the points [begin, end).
   void add(std::size_t begin, std::size_t end) noexcept {
@@ -92,7 +98,7 @@ std::vector<Point3> join_parts(std::vector<WeldedPart> parts, const ParallelFor&
     parts[p].vertices = {};
   });
 
-  SharedWelder welder(points);
+  SharedWelder welder(points, parallel_for);
   std::vector<std::size_t> places(parts.size());
   parallel_for(parts.size(), [&](std::size_t p) { welder.add(begin[p], begin[p + 1]); });
   parallel_for(parts.size(), [&](std::size_t p) {

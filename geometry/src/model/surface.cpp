@@ -46,7 +46,6 @@ class Survey {
   /// last, so that no two threads meet.
   void meet_edges(const ParallelFor& parallel_for) {
     patch_.resize(mesh_.triangles.size());
-    std::iota(patch_.begin(), patch_.end(), 0U);
     std::vector<Met> ranges(edges_.ranges());
     parallel_for(ranges.size(), [&](std::size_t range) { ranges[range] = meet_edges(range); });
     for (Met& met : ranges) {
@@ -62,6 +61,8 @@ class Survey {
 
   Met meet_edges(std::size_t range) {
     Met met;
+    const auto [begin, end] = edges_.triangles_of(range);
+    std::iota(patch_.data() + begin, patch_.data() + end, static_cast<std::uint32_t>(begin));
     edges_.for_each_edge(range, [&](std::uint32_t lower, Sides sides) {
       if (sides.size() == 1) {
         ++met.open_edges;
@@ -136,13 +137,16 @@ class Survey {
   /// Numbers the patches by their first triangles.
   void label_patches(const ParallelFor& parallel_for) {
     std::vector<std::size_t> firsts(block_count(patch_.size()));
-    for_each_block(patch_.size(), parallel_for,
-                   [&](std::size_t block, std::size_t begin, std::size_t end) {
-                     for (std::size_t t = begin; t < end; ++t)
-                       if (patch_[t] == t) ++firsts[block];
-                   });
+    const auto count_firsts = [&](std::size_t block, std::size_t begin, std::size_t end) {
+      for (std::size_t t = begin; t < end; ++t)
+        if (patch_[t] == t) ++firsts[block];
+    };
+    for_each_block(patch_.size(), parallel_for, count_firsts);
     if (std::accumulate(firsts.begin(), firsts.end(), std::size_t{0}) == 1) {
-      std::fill(patch_.begin(), patch_.end(), 0);
+      const auto clear = [&](std::size_t, std::size_t begin, std::size_t end) {
+        std::fill(patch_.data() + begin, patch_.data() + end, 0);
+      };
+      for_each_block(patch_.size(), parallel_for, clear);
       patches_ = 1;
       return;
     }
@@ -238,7 +242,7 @@ class Survey {
   Surface result_;
   bool clash_ = false;                              ///< two neighbours disagree somewhere
   std::vector<std::vector<EdgeTable::Side>> wide_;  ///< sides of edges with three or more
-  std::vector<std::uint32_t> patch_;                ///< of each triangle
+  LargeVector<std::uint32_t> patch_;                ///< of each triangle
   std::uint32_t patches_ = 0;
 };
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "large_vector.hpp"
 #include "routebench/geometry/parallel.hpp"
 #include "routebench/geometry/types.hpp"
 
@@ -27,7 +28,7 @@ struct Surface {
   std::size_t unpaired_edges = 0;
 
   std::vector<std::uint8_t> turn;    ///< per triangle: flipped; empty if none is
-  std::vector<std::uint32_t> shell;  ///< per triangle, numbered by first appearance
+  LargeVector<std::uint32_t> shell;  ///< per triangle, numbered by first appearance
   std::vector<std::uint8_t> closed;  ///< per shell: no unpaired edge
 };
 
