@@ -4,6 +4,7 @@
 #include <atomic>
 #include <bit>
 #include <cstddef>
+#include <iterator>
 #include <span>
 #include <utility>
 
@@ -79,6 +80,8 @@ class SharedWelder {
   LargeVector<std::uint32_t> earlier_;  ///< of each point: one that equals it, or itself
 };
 
+Point3 in_double_precision(const FloatPoint& p) noexcept { return {p[0], p[1], p[2]}; }
+
 /// Where each part begins among the items of all, and the end.
 template <typename Count>
 std::vector<std::size_t> beginnings(std::size_t parts, const Count& count) {
@@ -90,6 +93,12 @@ std::vector<std::size_t> beginnings(std::size_t parts, const Count& count) {
 }  // namespace
 
 std::vector<Point3> join_parts(std::vector<WeldedPart> parts, const ParallelFor& parallel_for) {
+  std::vector<Point3> vertices;
+  if (parts.size() == 1) {
+    std::transform(parts[0].vertices.begin(), parts[0].vertices.end(), std::back_inserter(vertices),
+                   in_double_precision);
+    return vertices;
+  }
   const auto begin =
       beginnings(parts.size(), [&](std::size_t p) { return parts[p].vertices.size(); });
   LargeVector<FloatPoint> points(begin.back());
@@ -106,26 +115,21 @@ std::vector<Point3> join_parts(std::vector<WeldedPart> parts, const ParallelFor&
       if (welder.is_first(v)) ++places[p];
   });
   const auto place = beginnings(parts.size(), [&](std::size_t p) { return places[p]; });
-  std::vector<Point3> vertices;
   resize_large(vertices, place.back(), parallel_for);
   LargeVector<std::uint32_t> number(points.size());  // of the place of a vertex that is the first
   parallel_for(parts.size(), [&](std::size_t p) {
     std::size_t next = place[p];
     for (std::size_t v = begin[p]; v < begin[p + 1]; ++v) {
       if (!welder.is_first(v)) continue;
-      const auto& [x, y, z] = points[v];
-      vertices[next] = {x, y, z};
+      vertices[next] = in_double_precision(points[v]);
       number[v] = static_cast<std::uint32_t>(next++);
     }
   });
   parallel_for(parts.size(), [&](std::size_t p) {
     std::vector<std::uint32_t> own(begin[p + 1] - begin[p]);
     for (std::size_t v = 0; v < own.size(); ++v) own[v] = number[welder.first(begin[p] + v)];
-    for (auto& [a, b, c] : parts[p].triangles) {
-      a = own[a];
-      b = own[b];
-      c = own[c];
-    }
+    for (auto& triangle : parts[p].triangles)
+      for (std::uint32_t& corner : triangle) corner = own[corner];
   });
   return vertices;
 }

@@ -9,15 +9,14 @@ namespace routebench::models {
 namespace {
 
 constexpr std::size_t kFewestSlots = 256;
-inline bool same(const Point3& a, const Point3& b) { return a == b; }
-inline bool same(const FloatPoint& a, const FloatPoint& b) {
-  std::uint64_t x, y;
-  std::uint32_t z, w;
-  __builtin_memcpy(&x, &a, 8);
-  __builtin_memcpy(&y, &b, 8);
-  __builtin_memcpy(&z, &a[2], 4);
-  __builtin_memcpy(&w, &b[2], 4);
-  return ((x ^ y) | (z ^ w)) == 0;
+
+bool are_same(const Point3& a, const Point3& b) noexcept { return a == b; }
+
+/// Without negative zeros points are equal where all their bits are: one branch instead of three.
+bool are_same(const FloatPoint& a, const FloatPoint& b) noexcept {
+  const auto p = std::bit_cast<std::array<std::uint32_t, 3>>(a);
+  const auto q = std::bit_cast<std::array<std::uint32_t, 3>>(b);
+  return ((p[0] ^ q[0]) | (p[1] ^ q[1]) | (p[2] ^ q[2])) == 0;
 }
 
 }  // namespace
@@ -41,8 +40,8 @@ void VertexWelder<Point>::weld(std::span<Point> points, std::uint32_t* indices) 
   const std::size_t mask = mask_;
   for (std::size_t i = 0; i < points.size(); ++i) {
     std::size_t place = tags[i] & mask;
-    while (slots[place].vertex != 0 &&
-           !(slots[place].tag == tags[i] && same(vertices_[slots[place].vertex - 1], points[i])))
+    while (slots[place].vertex != 0 && !(slots[place].tag == tags[i] &&
+                                         are_same(vertices_[slots[place].vertex - 1], points[i])))
       place = (place + 1) & mask;
     if (slots[place].vertex == 0) {
       vertices_.push_back(points[i]);

@@ -62,6 +62,7 @@ std::optional<std::vector<Ring>> chain_by_edges(std::span<const Cut> cuts, const
   CutsByEdge by_edge(cuts);
   for (std::uint32_t cut = 0; cut < cuts.size(); ++cut) {
     if (!by_edge.insert(cut)) return std::nullopt;
+    // Until they are needed, on the way around, they will have come.
     __builtin_prefetch(&mesh.vertices[cuts[cut].alone].z);
     __builtin_prefetch(&mesh.vertices[cuts[cut].from_end].z);
   }
