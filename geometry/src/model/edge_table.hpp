@@ -19,7 +19,7 @@ namespace routebench::models {
 /// of their sides are found in that stretch, where a mesh's triangles follow their neighbours; the
 /// others are kept. So a range's edges are made when they are asked for, near to the processor.
 ///
-/// Cost   a counting sort by the lower vertex, linear; 12 bytes a side that is kept.
+/// Cost   a counting sort by the lower vertex, linear; 16 bytes a side that is kept.
 class EdgeTable {
  public:
   static constexpr std::size_t kTrianglesPerRange = std::size_t{1} << 15U;

@@ -92,7 +92,7 @@ std::vector<std::size_t> beginnings(std::size_t parts, const Count& count) {
 
 }  // namespace
 
-std::vector<Point3> join_parts(std::vector<WeldedPart> parts, const ParallelFor& parallel_for) {
+std::vector<Point3> join_parts(std::span<WeldedPart> parts, const ParallelFor& parallel_for) {
   std::vector<Point3> vertices;
   if (parts.size() == 1) {
     std::transform(parts[0].vertices.begin(), parts[0].vertices.end(), std::back_inserter(vertices),

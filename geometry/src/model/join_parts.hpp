@@ -20,11 +20,12 @@ struct WeldedPart {
 };
 
 /// Welds parts to what one VertexWelder would have made of all their triangles: the same numbers,
-/// whatever the parts. Returns the vertices of all; triangles get their numbers.
+/// whatever the parts. Returns the vertices of all; the parts' triangles get their numbers, and the
+/// parts lose their vertices.
 ///
 /// Takes  parts whose triangles' corners all together stay below 2^32.
 /// Cost   linear in vertices and triangles.
-[[nodiscard]] std::vector<Point3> join_parts(std::vector<WeldedPart> parts,
+[[nodiscard]] std::vector<Point3> join_parts(std::span<WeldedPart> parts,
                                              const ParallelFor& parallel_for);
 
 }  // namespace routebench::models

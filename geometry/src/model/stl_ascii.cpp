@@ -297,7 +297,7 @@ RawMesh read_ascii_stl(std::span<const char> bytes, const ReadContext& context) 
   refuse_too_many_triangles(context.name, facets);
   RawMesh raw;
   raw.single_precision = true;
-  raw.mesh.vertices = join_parts(std::move(parts), context.parallel_for);
+  raw.mesh.vertices = join_parts(parts, context.parallel_for);
   resize_large(raw.mesh.triangles, triangles, context.parallel_for);
   context.parallel_for(results.size(), [&](std::size_t i) {
     const auto& own = results[i].triangles;

@@ -93,7 +93,7 @@ RawMesh read_binary_stl(std::span<const char> bytes, const ReadContext& context)
     FacetSink sink(context, room, end - begin, begin);
     for (std::size_t i = begin; i < end; ++i) {
       const std::size_t offset = kHeaderBytes + i * kFacetBytes;
-      __builtin_prefetch(bytes.data() + offset + kBytesAhead);
+      __builtin_prefetch(&bytes[std::min(offset + kBytesAhead, bytes.size() - 1)]);
       Facet facet;
       std::memcpy(&facet, bytes.data() + offset + kNormalBytes, sizeof facet);
       sink.add(facet, [offset] { return "byte " + std::to_string(offset); });
@@ -103,14 +103,13 @@ RawMesh read_binary_stl(std::span<const char> bytes, const ReadContext& context)
   };
   for_each_block(extent.facets, context.parallel_for, read);
   raw.mesh.vertices = join_parts(parts, context.parallel_for);
-  auto end = triangles.begin();
+  // Facets that were left out are gaps at the ends of parts.
+  auto* end = triangles.data();
   for (const WeldedPart& part : parts) {
-    // Close the gap that facets left out made.
-    end = &*end == part.triangles.data()
-              ? end + static_cast<std::ptrdiff_t>(part.triangles.size())
-              : std::copy(part.triangles.begin(), part.triangles.end(), end);
+    if (part.triangles.data() != end) std::copy(part.triangles.begin(), part.triangles.end(), end);
+    end += part.triangles.size();
   }
-  triangles.erase(end, triangles.end());
+  triangles.resize(static_cast<std::size_t>(end - triangles.data()));
   warn_of_dropped(extent.facets - triangles.size(), raw.warnings);
   if (!extent.warning.empty()) raw.warnings.push_back(extent.warning);
   return raw;
