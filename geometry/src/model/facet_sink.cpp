@@ -8,7 +8,10 @@ namespace routebench::models {
 
 FacetSink::FacetSink(const ReadContext& context, Room room, std::size_t expected,
                      std::size_t facets_before)
-    : context_(context), room_(std::move(room)), welder_(expected / 2), seen_(facets_before) {}
+    : context_(context),
+      room_(std::move(room)),
+      welder_(expected),  // a closed mesh has half as many vertices: with room few collide
+      seen_(facets_before) {}
 
 bool FacetSink::each_is_finite(const Facet& facet) noexcept {
   for (const auto& corner : facet) {

@@ -23,7 +23,7 @@ bool are_same(const FloatPoint& a, const FloatPoint& b) noexcept {
 
 template <typename Point>
 VertexWelder<Point>::VertexWelder(std::size_t expected)
-    : slots_(std::bit_ceil(std::max(kFewestSlots, expected * 4))), mask_(slots_.size() - 1) {
+    : slots_(std::bit_ceil(std::max(kFewestSlots, expected * 2))), mask_(slots_.size() - 1) {
   vertices_.reserve(expected);
 }
 
@@ -35,7 +35,7 @@ void VertexWelder<Point>::weld(std::span<Point> points, std::uint32_t* indices) 
     tags[i] = tag_of(points[i]);
     __builtin_prefetch(&slots_[tags[i] & mask_]);
   }
-  if ((vertices_.size() + points.size()) * 2 > slots_.size()) grow();
+  if (vertices_.size() + points.size() > slots_.size() / 8 * 5) grow();
   Slot* const slots = slots_.data();
   const std::size_t mask = mask_;
   for (std::size_t i = 0; i < points.size(); ++i) {
