@@ -175,10 +175,10 @@ double area_mm2(const Polygons& polygons) {
 }
 
 double perimeter_mm(const Ring& ring) {
+  if (ring.empty()) return 0;
   double sum = 0;
-  for (std::size_t i = 0; i < ring.size(); ++i)
-    sum += distance(ring[i], ring[(i + 1) % ring.size()]);
-  return sum;
+  for (std::size_t i = 1; i < ring.size(); ++i) sum += distance(ring[i - 1], ring[i]);
+  return sum + distance(ring.back(), ring.front());
 }
 
 double perimeter_mm(const Polygons& polygons) {

@@ -142,16 +142,20 @@ BENCHMARK(read_and_slice)->Apply(two_million);
 
 /// Equal corners become one vertex; what the readers do on the way.
 void weld_corners(benchmark::State& state) {
-  using models::VertexWelder;
+  using Welder = models::VertexWelder<models::FloatPoint>;
   const Mesh mesh = bench::sphere(state.range(0)).mesh;
-  std::vector<Point3> corners;
+  std::vector<models::FloatPoint> corners;
   for (const auto& triangle : mesh.triangles)
-    for (const std::uint32_t corner : triangle) corners.push_back(mesh.vertices[corner]);
+    for (const std::uint32_t corner : triangle) {
+      const Point3& p = mesh.vertices[corner];
+      corners.push_back(
+          {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)});
+    }
   std::vector<std::uint32_t> numbers(corners.size());
   for (auto _ : state) {
-    VertexWelder welder(mesh.triangles.size() / 2);
-    for (std::size_t i = 0; i < corners.size(); i += VertexWelder::kBatch)
-      welder.weld(std::span(corners).subspan(i, std::min(VertexWelder::kBatch, corners.size() - i)),
+    Welder welder(mesh.triangles.size() / 2);
+    for (std::size_t i = 0; i < corners.size(); i += Welder::kBatch)
+      welder.weld(std::span(corners).subspan(i, std::min(Welder::kBatch, corners.size() - i)),
                   numbers.data() + i);
     benchmark::DoNotOptimize(welder.take_vertices());
   }

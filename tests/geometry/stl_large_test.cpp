@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <charconv>
@@ -89,6 +90,44 @@ TEST(LargeStl, VerticesAreNumberedInOrderOfAppearanceAndEveryCornerIsThatOfTheFi
     }
   }
   EXPECT_EQ(known, model.mesh.vertices.size());
+}
+
+TEST(LargeStl, FacetsLeftOutInAnyPartLeaveWhatAFileWithoutThemWouldGive) {
+  Mesh rest = large_mesh();
+  const std::string bytes = stl_bytes(rest);
+  std::string damaged = bytes;
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  std::size_t left_out = 0;
+  for (std::size_t t = 7; t < rest.triangles.size(); t += 997, ++left_out)
+    std::memcpy(damaged.data() + 84 + 50 * t + 12, &kNan, sizeof kNan);
+  std::size_t number = 0;
+  std::erase_if(rest.triangles, [&](const auto&) { return number++ % 997 == 7; });
+  ASSERT_EQ(rest.triangles.size() + left_out, large_mesh().triangles.size());
+  const ModelFile damaged_file("part.stl", damaged);
+  const ModelFile rest_file("rest.stl", stl_bytes(rest));
+  const Model repaired = load_model(damaged_file.path(), {.repair = true}, backwards_on_threads);
+  const Model expected = load_model(rest_file.path(), {.repair = true}, backwards_on_threads);
+  EXPECT_TRUE(repaired.mesh.vertices == expected.mesh.vertices);
+  EXPECT_TRUE(repaired.mesh.triangles == expected.mesh.triangles);
+  ASSERT_EQ(repaired.warnings.size(), expected.warnings.size() + 1);
+  EXPECT_TRUE(repaired.warnings[0].starts_with(std::to_string(left_out) + " facets left out"));
+}
+
+TEST(LargeStl, TheOrderOfFacetsChangesNothingButNumbers) {
+  Mesh mesh = large_mesh();
+  mesh.triangles.erase(mesh.triangles.begin() + 100'000);
+  test::append(mesh, test::moved(large_mesh(), {100, 0, 0}));
+  const ModelFile in_order("in_order.stl", stl_bytes(mesh));
+  std::shuffle(mesh.triangles.begin(), mesh.triangles.end(), std::mt19937_64(1));
+  const ModelFile shuffled("shuffled.stl", stl_bytes(mesh));
+  const Model expected = load_model(in_order.path(), {}, backwards_on_threads);
+  const Model model = load_model(shuffled.path(), {}, backwards_on_threads);
+  EXPECT_EQ(model.report.components, 2U);
+  EXPECT_EQ(model.report.open_edges, 3U);
+  EXPECT_EQ(model.report.non_manifold_edges, 0U);
+  EXPECT_EQ(model.report.vertices, expected.report.vertices);
+  EXPECT_EQ(model.content_hash, expected.content_hash);
+  EXPECT_EQ(model.warnings, expected.warnings);
 }
 
 TEST(LargeStl, FaultsFarInsideALargeAsciiFileAreNamedWithFacetAndLine) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "routebench/geometry/parallel.hpp"
 #include "routebench/geometry/types.hpp"
 
 namespace routebench::models {
@@ -45,5 +46,8 @@ struct Bounds {
     return std::hypot(s.x, s.y, s.z);
   }
 };
+
+/// The box around all vertices of a mesh.
+[[nodiscard]] Bounds bounds_of(const Mesh& mesh, const ParallelFor& parallel_for);
 
 }  // namespace routebench::models

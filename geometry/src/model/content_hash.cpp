@@ -1,9 +1,11 @@
 #include "model/content_hash.hpp"
 
+#include <array>
 #include <bit>
 #include <numeric>
 #include <vector>
 
+#include "large_vector.hpp"
 #include "model/blocks.hpp"
 
 namespace routebench::models {
@@ -29,21 +31,18 @@ std::uint64_t point_hash(const Point3& p) noexcept {
   return chain(xy, std::bit_cast<std::uint64_t>(p.z + 0.0));
 }
 
-/// Whichever corner comes first.
+/// Whichever corner comes first. Without branches, which nobody could foresee.
 std::uint64_t triangle_hash(std::uint64_t a, std::uint64_t b, std::uint64_t c) noexcept {
-  while (a > b || a > c) {
-    const std::uint64_t first = a;
-    a = b;
-    b = c;
-    c = first;
-  }
-  return chain(chain(a, b), c);
+  const std::array<std::uint64_t, 5> round{a, b, c, a, b};
+  const bool a_is_least = static_cast<unsigned>(a <= b) & static_cast<unsigned>(a <= c);
+  const std::size_t least = a_is_least ? 0 : b <= c ? 1 : 2;
+  return chain(chain(round[least], round[least + 1]), round[least + 2]);
 }
 
 }  // namespace
 
 std::uint64_t content_hash(const Mesh& mesh, const ParallelFor& parallel_for) {
-  std::vector<std::uint64_t> points(mesh.vertices.size());
+  LargeVector<std::uint64_t> points(mesh.vertices.size());
   for_each_block(points.size(), parallel_for, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) points[v] = point_hash(mesh.vertices[v]);
   });

@@ -4,14 +4,14 @@
 #include <string>
 #include <utility>
 
-#include "model/join_parts.hpp"
-
 namespace routebench::models {
 
-FacetSink::FacetSink(const ReadContext& context, std::size_t expected, std::size_t facets_before)
-    : context_(context), welder_(expected / 2), seen_(facets_before) {
-  mesh_.triangles.reserve(expected);
-}
+FacetSink::FacetSink(const ReadContext& context, Room room, std::size_t expected,
+                     std::size_t facets_before)
+    : context_(context),
+      room_(std::move(room)),
+      welder_(expected),  // a closed mesh has half as many vertices: with room few collide
+      seen_(facets_before) {}
 
 bool FacetSink::each_is_finite(const Facet& facet) noexcept {
   for (const auto& corner : facet) {
@@ -39,31 +39,20 @@ void FacetSink::refuse_not_finite(const Facet& facet, const std::string& place) 
 }
 
 void FacetSink::flush() {
-  static_assert(VertexWelder::kBatch % 3 == 0);
-  std::array<std::uint32_t, VertexWelder::kBatch> indices;  // written before it is read
-  welder_.weld({batch_.data(), filled_}, indices.data());
-  for (std::size_t i = 0; i < filled_; i += 3) {
-    mesh_.triangles.push_back({indices[i], indices[i + 1], indices[i + 2]});
-  }
+  static_assert(decltype(welder_)::kBatch % 3 == 0);
+  if (filled_ > 0) welder_.weld({batch_.data(), filled_}, room_(filled_ / 3)->data());
   filled_ = 0;
 }
 
-Mesh FacetSink::take_mesh() {
+std::vector<FloatPoint> FacetSink::take_vertices() {
   flush();
-  mesh_.vertices = welder_.take_vertices();
-  return std::exchange(mesh_, {});
+  return welder_.take_vertices();
 }
 
-RawMesh join_stl_parts(std::vector<Mesh> parts, std::size_t dropped,
-                       const ParallelFor& parallel_for) {
-  RawMesh raw;
-  raw.single_precision = true;
-  raw.mesh = join_parts(std::move(parts), parallel_for);
-  if (dropped > 0) {
-    raw.warnings.push_back(counted(dropped, "facet") +
-                           " left out: with corners that are not finite numbers");
-  }
-  return raw;
+void warn_of_dropped(std::size_t dropped, std::vector<std::string>& warnings) {
+  if (dropped == 0) return;
+  warnings.push_back(counted(dropped, "facet") +
+                     " left out: with corners that are not finite numbers");
 }
 
 }  // namespace routebench::models

@@ -4,6 +4,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <string>
 #include <vector>
 
 #include "model/raw_mesh.hpp"
@@ -11,14 +13,18 @@
 
 namespace routebench::models {
 
-using Facet = std::array<std::array<float, 3>, 3>;
+using Facet = std::array<FloatPoint, 3>;
 
 /// Welds facets in batches and keeps out those whose corners are not finite.
 class FacetSink {
  public:
+  /// Gives room for so many more triangles, right after those before.
+  using Room = std::function<std::array<std::uint32_t, 3>*(std::size_t count)>;
+
   /// `expected` facets at most, bounded by what the file can hold; messages count from
   /// `facets_before` on.
-  FacetSink(const ReadContext& context, std::size_t expected, std::size_t facets_before = 0);
+  FacetSink(const ReadContext& context, Room room, std::size_t expected,
+            std::size_t facets_before = 0);
 
   /// Adds a facet. Throws Error{kBadInput} if a corner is not finite, unless the context says
   /// repair: then it is left out and counted. `place` tells a message where the facet is, for
@@ -32,17 +38,16 @@ class FacetSink {
       return;
     }
     ++seen_;
-    for (const auto& [x, y, z] : facet) {
-      batch_[filled_++] = {static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)};
-    }
+    for (const FloatPoint& corner : facet) batch_[filled_++] = corner;
     if (filled_ == batch_.size()) flush();
   }
 
   /// Facets added so far and before, left out ones included.
   [[nodiscard]] std::size_t seen() const noexcept { return seen_; }
 
-  /// What was collected; the sink is empty afterwards. What was left out stands in dropped().
-  [[nodiscard]] Mesh take_mesh();
+  /// The vertices, when all triangles are to be where there was room for them; the sink is empty
+  /// afterwards. What was left out stands in dropped().
+  [[nodiscard]] std::vector<FloatPoint> take_vertices();
   [[nodiscard]] std::size_t dropped() const noexcept { return dropped_; }
 
  private:
@@ -58,16 +63,15 @@ class FacetSink {
   void flush();
 
   const ReadContext& context_;
-  VertexWelder welder_;
-  Mesh mesh_;
-  std::array<Point3, VertexWelder::kBatch> batch_;
+  Room room_;
+  VertexWelder<FloatPoint> welder_;
+  std::array<FloatPoint, VertexWelder<FloatPoint>::kBatch> batch_;
   std::size_t filled_ = 0;
   std::size_t seen_;
   std::size_t dropped_ = 0;
 };
 
-/// The mesh of an STL file from those of its parts, with a warning about facets left out.
-[[nodiscard]] RawMesh join_stl_parts(std::vector<Mesh> parts, std::size_t dropped,
-                                     const ParallelFor& parallel_for);
+/// Adds a warning about facets left out, if there are any.
+void warn_of_dropped(std::size_t dropped, std::vector<std::string>& warnings);
 
 }  // namespace routebench::models

@@ -1,137 +1,137 @@
 #include "model/join_parts.hpp"
 
-#include <array>
+#include <algorithm>
+#include <atomic>
+#include <bit>
 #include <cstddef>
-#include <cstdint>
+#include <iterator>
 #include <span>
 #include <utility>
 
-#include "model/vertex_welder.hpp"
+#include "large_vector.hpp"
+#include "model/blocks.hpp"
 
 namespace routebench::models {
 namespace {
 
-/// Equal points are in the same bin, and each bin is welded for itself. The number of bins is the
-/// same for every number of threads.
-constexpr std::size_t kBins = 16;
-
-std::size_t bin_of(const Point3& p) noexcept { return VertexWelder::tag_of(p) >> 28U; }
-static_assert(kBins == 1U << 4U, "a bin is the top four bits of a tag");
-
-/// The vertices of one part, sorted by bin; in order within each.
-class BinnedPart {
+/// Finds equal points while several threads add theirs.
+class SharedWelder {
  public:
-  BinnedPart() = default;
-  /// `first` is the number of the part's first vertex among those of all parts.
-  BinnedPart(std::span<const Point3> points, std::size_t first)
-      : points_(points), first_(first), sorted_(points.size()) {
-    std::vector<std::uint8_t> bins(points.size());
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      bins[i] = static_cast<std::uint8_t>(bin_of(points[i]));
-      ++begin_[bins[i] + 2];
-    }
-    // Counts are kept two places up, so that after filling each entry is the beginning of its own.
-    for (std::size_t bin = 2; bin < begin_.size(); ++bin) begin_[bin] += begin_[bin - 1];
-    for (std::size_t i = 0; i < points.size(); ++i)
-      sorted_[begin_[bins[i] + 1]++] = static_cast<std::uint32_t>(i);
+  SharedWelder(std::span<const FloatPoint> points, const ParallelFor& parallel_for)
+      : points_(points),
+        slots_(std::bit_ceil(points.size() + points.size() / 2 + 2)),
+        mask_(slots_.size() - 1),
+        earlier_(points.size()) {
+    const auto clear = [&](std::size_t, std::size_t begin, std::size_t end) {
+      std::fill(slots_.data() + begin, slots_.data() + end, 0);
+    };
+    for_each_block(slots_.size(), parallel_for, clear);
   }
 
-  /// Calls visit(number, point) for the vertices of a bin.
-  template <typename Visit>
-  void for_each_in(std::size_t bin, Visit&& visit) const {
-    for (std::size_t i = begin_[bin]; i < begin_[bin + 1]; ++i)
-      visit(static_cast<std::uint32_t>(first_ + sorted_[i]), points_[sorted_[i]]);
+  /// Adds the points [begin, end).
+  void add(std::size_t begin, std::size_t end) noexcept {
+    constexpr std::size_t kBatch = 32;
+    std::array<std::uint32_t, kBatch> tags;  // written before it is read
+    for (std::size_t first = begin; first < end; first += kBatch) {
+      const std::size_t last = std::min(end, first + kBatch);
+      for (std::size_t i = first; i < last; ++i) {
+        earlier_[i] = static_cast<std::uint32_t>(i);
+        tags[i - first] = tag_of(points_[i]);
+        __builtin_prefetch(&slots_[tags[i - first] & mask_], 1);
+      }
+      for (std::size_t i = first; i < last; ++i) add(i, tags[i - first]);
+    }
   }
-  [[nodiscard]] std::span<const Point3> points() const noexcept { return points_; }
-  [[nodiscard]] std::size_t first() const noexcept { return first_; }
+
+  // When all points were added:
+
+  [[nodiscard]] bool is_first(std::size_t number) const noexcept {
+    return earlier_[number] == number;
+  }
+  /// The first of all points that equal one.
+  [[nodiscard]] std::size_t first(std::size_t number) const noexcept {
+    while (!is_first(number)) number = earlier_[number];
+    return number;
+  }
 
  private:
-  std::span<const Point3> points_;
-  std::size_t first_ = 0;
-  std::vector<std::uint32_t> sorted_;
-  std::array<std::size_t, kBins + 2> begin_{};
+  /// Of two equal points that meet at a slot, the earlier one stays there. The later one leaves for
+  /// good, so nobody else writes down who was earlier.
+  void add(std::size_t number, std::uint32_t tag) noexcept {
+    const std::uint64_t own = std::uint64_t{tag} << 32U | (number + 1);
+    for (std::size_t place = tag & mask_;; place = (place + 1) & mask_) {
+      std::atomic_ref slot(slots_[place]);
+      std::uint64_t there = slot.load(std::memory_order_acquire);
+      if (there == 0 && slot.compare_exchange_strong(there, own)) return;
+      if (there >> 32U != tag || points_[number_in(there)] != points_[number]) continue;
+      while (own < there && !slot.compare_exchange_weak(there, own)) {
+      }
+      earlier_[number_in(std::max(own, there))] = number_in(std::min(own, there));
+      return;
+    }
+  }
+  [[nodiscard]] static std::uint32_t number_in(std::uint64_t slot) noexcept {
+    return static_cast<std::uint32_t>(slot) - 1;
+  }
+
+  std::span<const FloatPoint> points_;
+  LargeVector<std::uint64_t> slots_;  ///< tag and number + 1; 0 is free
+  std::size_t mask_;
+  LargeVector<std::uint32_t> earlier_;  ///< of each point: one that equals it, or itself
 };
 
-/// Writes to first[i], for every vertex i of a bin, the first one at its place.
-void weld_bin(std::span<const BinnedPart> parts, std::size_t bin, std::span<std::uint32_t> first) {
-  VertexWelder welder(first.size() / kBins);
-  std::vector<std::uint32_t> first_of;  // per distinct point
-  first_of.reserve(first.size() / kBins);
-  std::array<Point3, VertexWelder::kBatch> points;
-  std::array<std::uint32_t, VertexWelder::kBatch> numbers;  // written before it is read
-  std::array<std::uint32_t, VertexWelder::kBatch> welded;   // as well
-  std::size_t filled = 0;
-  const auto flush = [&] {
-    welder.weld({points.data(), filled}, welded.data());
-    for (std::size_t i = 0; i < filled; ++i) {
-      if (welded[i] == first_of.size()) first_of.push_back(numbers[i]);
-      first[numbers[i]] = first_of[welded[i]];
-    }
-    filled = 0;
-  };
-  for (const BinnedPart& part : parts) {
-    part.for_each_in(bin, [&](std::uint32_t number, const Point3& point) {
-      points[filled] = point;
-      numbers[filled] = number;
-      if (++filled == points.size()) flush();
-    });
-  }
-  flush();
-}
+Point3 in_double_precision(const FloatPoint& p) noexcept { return {p[0], p[1], p[2]}; }
 
-/// Numbers the places of vertices in order of first appearance: one number for each vertex of the
-/// parts, and the places.
-std::pair<std::vector<std::uint32_t>, std::vector<Point3>> number_places(
-    std::span<const BinnedPart> parts, std::size_t vertices, const ParallelFor& parallel_for) {
-  std::vector<std::uint32_t> place(vertices);
-  parallel_for(kBins, [&](std::size_t bin) { weld_bin(parts, bin, place); });
-  std::vector<Point3> places;
-  places.reserve(vertices);
-  for (const BinnedPart& part : parts) {
-    std::size_t number = part.first();
-    for (const Point3& point : part.points()) {
-      const std::uint32_t first = place[number];
-      if (first == number) {
-        place[number] = static_cast<std::uint32_t>(places.size());
-        places.push_back(point);
-      } else {
-        place[number] = place[first];  // which has its number already
-      }
-      ++number;
-    }
-  }
-  return {std::move(place), std::move(places)};
+/// Where each part begins among the items of all, and the end.
+template <typename Count>
+std::vector<std::size_t> beginnings(std::size_t parts, const Count& count) {
+  std::vector<std::size_t> begin{0};
+  for (std::size_t part = 0; part < parts; ++part) begin.push_back(begin.back() + count(part));
+  return begin;
 }
 
 }  // namespace
 
-Mesh join_parts(std::vector<Mesh> parts, const ParallelFor& parallel_for) {
-  if (parts.size() == 1) return std::move(parts[0]);
-  std::vector<std::size_t> first_vertex{0};
-  std::vector<std::size_t> first_triangle{0};
-  for (const Mesh& part : parts) {
-    first_vertex.push_back(first_vertex.back() + part.vertices.size());
-    first_triangle.push_back(first_triangle.back() + part.triangles.size());
+std::vector<Point3> join_parts(std::span<WeldedPart> parts, const ParallelFor& parallel_for) {
+  std::vector<Point3> vertices;
+  if (parts.size() == 1) {
+    std::transform(parts[0].vertices.begin(), parts[0].vertices.end(), std::back_inserter(vertices),
+                   in_double_precision);
+    return vertices;
   }
-  std::vector<BinnedPart> binned(parts.size());
-  parallel_for(parts.size(), [&](std::size_t part) {
-    binned[part] = BinnedPart(parts[part].vertices, first_vertex[part]);
+  const auto begin =
+      beginnings(parts.size(), [&](std::size_t p) { return parts[p].vertices.size(); });
+  LargeVector<FloatPoint> points(begin.back());
+  parallel_for(parts.size(), [&](std::size_t p) {
+    std::copy(parts[p].vertices.begin(), parts[p].vertices.end(), points.data() + begin[p]);
+    parts[p].vertices = {};
   });
-  auto [place, places] = number_places(binned, first_vertex.back(), parallel_for);
-  binned = {};
-  for (Mesh& part : parts) part.vertices = {};  // what comes next takes as much
 
-  Mesh mesh;
-  mesh.vertices = std::move(places);
-  mesh.triangles.resize(first_triangle.back());
-  const std::vector<std::uint32_t>& number = place;
-  parallel_for(parts.size(), [&](std::size_t part) {
-    const std::uint32_t* const own = number.data() + first_vertex[part];
-    auto* to = mesh.triangles.data() + first_triangle[part];
-    for (const auto& [a, b, c] : parts[part].triangles) *to++ = {own[a], own[b], own[c]};
-    parts[part] = {};  // its memory is the next one's
+  SharedWelder welder(points, parallel_for);
+  std::vector<std::size_t> places(parts.size());
+  parallel_for(parts.size(), [&](std::size_t p) { welder.add(begin[p], begin[p + 1]); });
+  parallel_for(parts.size(), [&](std::size_t p) {
+    for (std::size_t v = begin[p]; v < begin[p + 1]; ++v)
+      if (welder.is_first(v)) ++places[p];
   });
-  return mesh;
+  const auto place = beginnings(parts.size(), [&](std::size_t p) { return places[p]; });
+  resize_large(vertices, place.back(), parallel_for);
+  LargeVector<std::uint32_t> number(points.size());  // of the place of a vertex that is the first
+  parallel_for(parts.size(), [&](std::size_t p) {
+    std::size_t next = place[p];
+    for (std::size_t v = begin[p]; v < begin[p + 1]; ++v) {
+      if (!welder.is_first(v)) continue;
+      vertices[next] = in_double_precision(points[v]);
+      number[v] = static_cast<std::uint32_t>(next++);
+    }
+  });
+  parallel_for(parts.size(), [&](std::size_t p) {
+    std::vector<std::uint32_t> own(begin[p + 1] - begin[p]);
+    for (std::size_t v = 0; v < own.size(); ++v) own[v] = number[welder.first(begin[p] + v)];
+    for (auto& triangle : parts[p].triangles)
+      for (std::uint32_t& corner : triangle) corner = own[corner];
+  });
+  return vertices;
 }
 
 }  // namespace routebench::models

@@ -122,7 +122,7 @@ Treated treat(Mesh& mesh, const Treatment& treatment, const ParallelFor& paralle
   Treated treated;
   treated.surface = survey(mesh, parallel_for);
   turn_flipped(mesh.triangles, treated.surface);
-  treated.shells = turn_inside_out_shells(mesh, treated.surface, parallel_for);
+  treated.shells = turn_inside_out_shells(mesh, false, treated.surface, parallel_for);
   treated.triangles = std::exchange(mesh.triangles, std::move(original));
   return treated;
 }
@@ -209,7 +209,7 @@ void mend(Mesh& mesh, const std::string& name, MeshReport& report,
     shells = best.shells;
   } else {
     turn_flipped(mesh.triangles, surface);
-    shells = turn_inside_out_shells(mesh, surface, parallel_for);
+    shells = turn_inside_out_shells(mesh, collapsed == 0, surface, parallel_for);
   }
   if (collapsed + flat > 0) drop_unused_vertices(mesh);
 

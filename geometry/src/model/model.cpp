@@ -67,9 +67,8 @@ Model load_model(const std::string& spec, const ModelOptions& options,
   models::mend(raw.mesh, name, model.report, raw.warnings, parallel_for);
   if (simplify_share)
     model.report.simplification = models::simplify_mesh(raw.mesh, *simplify_share, name);
-  const double scale = models::place(raw, size_mm, name, parallel_for);
+  const auto [scale, bounds] = models::place(raw, size_mm, name, parallel_for);
   if (model.report.simplification) model.report.simplification->deviation_mm *= scale;
-  const models::Bounds bounds = models::bounds_of(raw.mesh, parallel_for);
   model.report.volume_mm3 *= scale * scale * scale;
   model.report.lower_mm = bounds.lower;
   model.report.upper_mm = bounds.upper;

@@ -46,19 +46,8 @@ void refuse_unprintable(const Bounds& bounds, double scale, const std::string& n
 
 }  // namespace
 
-Bounds bounds_of(const Mesh& mesh, const ParallelFor& parallel_for) {
-  std::vector<Bounds> blocks(block_count(mesh.vertices.size()));
-  const auto bound = [&](std::size_t block, std::size_t begin, std::size_t end) {
-    for (std::size_t v = begin; v < end; ++v) blocks[block].add(mesh.vertices[v]);
-  };
-  for_each_block(mesh.vertices.size(), parallel_for, bound);
-  Bounds bounds;
-  for (const Bounds& block : blocks) bounds.add(block);
-  return bounds;
-}
-
-double place(RawMesh& raw, std::optional<double> size_mm, const std::string& name,
-             const ParallelFor& parallel_for) {
+Placement place(RawMesh& raw, std::optional<double> size_mm, const std::string& name,
+                const ParallelFor& parallel_for) {
   const Bounds bounds = bounds_of(raw.mesh, parallel_for);
   const double scale = size_mm ? *size_mm / bounds.largest_side() : 1.0;
   refuse_unprintable(bounds, scale, name);
@@ -79,18 +68,20 @@ double place(RawMesh& raw, std::optional<double> size_mm, const std::string& nam
     origin = bounds.lower;
     raw.warnings.push_back("moved to begin at x = y = 0: it lies " + far_away);
   }
-  const auto move = [&](std::size_t, std::size_t begin, std::size_t end) {
-    for (std::size_t v = begin; v < end; ++v) {
-      Point3& p = raw.mesh.vertices[v];
-      p = {(p.x - origin.x) * scale, (p.y - origin.y) * scale, (p.z - origin.z) * scale};
-    }
+  const auto placed = [&](const Point3& p) {
+    return Point3{(p.x - origin.x) * scale, (p.y - origin.y) * scale, (p.z - origin.z) * scale};
   };
-  for_each_block(raw.mesh.vertices.size(), parallel_for, move);
+  const auto move = [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) raw.mesh.vertices[v] = placed(raw.mesh.vertices[v]);
+  };
+  if (origin != Point3{} || scale != 1)
+    for_each_block(raw.mesh.vertices.size(), parallel_for, move);
   if (bounds.largest_side() * scale < kTinyMm) {
     raw.warnings.push_back("tiny: " + box_text(bounds.size(), scale) +
                            "; if the file is in metres or inches, scale it with ?size=...");
   }
-  return scale;
+  // Rounding keeps the order, so these are the bounds of what was moved.
+  return {scale, {placed(bounds.lower), placed(bounds.upper)}};
 }
 
 }  // namespace routebench::models

@@ -25,10 +25,12 @@ double length(const Point3& a) noexcept { return std::sqrt(a.x * a.x + a.y * a.y
 /// A shell's figures, in units of the file.
 struct Shell {
   Bounds bounds;
-  double volume = 0;   ///< about the middle of the bounds
-  double area = 0;     ///< twice
-  Point3 area_vector;  ///< twice; nothing if the shell is closed
+  double volume = 0;  ///< about the middle of the bounds
+  bool closed = false;
   bool solid = false;  ///< closed, or nearly
+  // Of a shell that is not closed:
+  double area = 0;     ///< twice
+  Point3 area_vector;  ///< twice
 };
 
 /// A shell counts as nearly closed while the missing part is smaller than a half sphere's opening.
@@ -59,14 +61,18 @@ void measure_triangles(const Surface& surface, const ParallelFor& parallel_for,
   }
 }
 
-std::vector<Shell> measure(const Mesh& mesh, const Surface& surface,
+std::vector<Shell> measure(const Mesh& mesh, bool uses_all_vertices, const Surface& surface,
                            const ParallelFor& parallel_for) {
   std::vector<Shell> shells(surface.closed.size());
+  for (std::size_t s = 0; s < shells.size(); ++s) shells[s].closed = surface.closed[s] != 0;
   const auto add_bounds = [&](Shell& shell, std::size_t t) {
     for (const std::uint32_t v : mesh.triangles[t]) shell.bounds.add(mesh.vertices[v]);
   };
-  measure_triangles(surface, parallel_for, shells, add_bounds,
-                    [](Shell& shell, const Shell& part) { shell.bounds.add(part.bounds); });
+  if (shells.size() == 1 && uses_all_vertices)
+    shells[0].bounds = bounds_of(mesh, parallel_for);
+  else
+    measure_triangles(surface, parallel_for, shells, add_bounds,
+                      [](Shell& shell, const Shell& part) { shell.bounds.add(part.bounds); });
   const auto add_volume = [&](Shell& shell, std::size_t t) {
     const Point3 middle = shell.bounds.middle();
     const auto& [i, j, k] = mesh.triangles[t];
@@ -75,6 +81,7 @@ std::vector<Shell> measure(const Mesh& mesh, const Surface& surface,
     const Point3 c = minus(mesh.vertices[k], middle);
     const Point3 normal = cross3(minus(b, a), minus(c, a));
     shell.volume += (a.x * normal.x + a.y * normal.y + a.z * normal.z) / 6;
+    if (shell.closed) return;
     shell.area += length(normal);
     shell.area_vector = {shell.area_vector.x + normal.x, shell.area_vector.y + normal.y,
                          shell.area_vector.z + normal.z};
@@ -87,10 +94,8 @@ std::vector<Shell> measure(const Mesh& mesh, const Surface& surface,
                          shell.area_vector.z + part.area_vector.z};
   };
   measure_triangles(surface, parallel_for, shells, add_volume, merge_volumes);
-  for (std::size_t s = 0; s < shells.size(); ++s) {
-    shells[s].solid =
-        surface.closed[s] != 0 || length(shells[s].area_vector) < kNearlyClosed * shells[s].area;
-  }
+  for (Shell& shell : shells)
+    shell.solid = shell.closed || length(shell.area_vector) < kNearlyClosed * shell.area;
   return shells;
 }
 
@@ -148,9 +153,9 @@ std::vector<std::uint8_t> solids_to_turn(const Mesh& mesh, const Surface& surfac
 
 }  // namespace
 
-ShellReport turn_inside_out_shells(Mesh& mesh, const Surface& surface,
+ShellReport turn_inside_out_shells(Mesh& mesh, bool uses_all_vertices, const Surface& surface,
                                    const ParallelFor& parallel_for) {
-  const std::vector<Shell> shells = measure(mesh, surface, parallel_for);
+  const std::vector<Shell> shells = measure(mesh, uses_all_vertices, surface, parallel_for);
   std::vector<std::uint8_t> turn = solids_to_turn(mesh, surface, shells);
   const double scattered = scattered_volume(shells);
   ShellReport report;
@@ -163,7 +168,7 @@ ShellReport turn_inside_out_shells(Mesh& mesh, const Surface& surface,
       report.volume += turn[s] != 0 ? -shells[s].volume : shells[s].volume;
     }
     report.turned += turn[s];
-    if (surface.closed[s] != 0 && is_empty(shells[s])) ++report.empty;
+    if (shells[s].closed && is_empty(shells[s])) ++report.empty;
   }
   if (report.turned == 0) return report;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {

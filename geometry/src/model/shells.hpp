@@ -23,7 +23,8 @@ struct ShellReport {
 /// are judged all together.
 /// Cost  linear in the triangles; where some shell faces inwards, also in the pairs of a triangle
 ///       and a shell whose lowest point lies over or under it.
-ShellReport turn_inside_out_shells(Mesh& mesh, const Surface& surface,
+/// `uses_all_vertices` may be said of a mesh without vertices that no triangle has; it saves time.
+ShellReport turn_inside_out_shells(Mesh& mesh, bool uses_all_vertices, const Surface& surface,
                                    const ParallelFor& parallel_for);
 
 }  // namespace routebench::models

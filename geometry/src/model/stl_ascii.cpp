@@ -9,7 +9,9 @@
 #include <utility>
 #include <vector>
 
+#include "large_vector.hpp"
 #include "model/facet_sink.hpp"
+#include "model/join_parts.hpp"
 #include "model/quick_float.hpp"
 #include "model/stl_reader.hpp"
 #include "routebench/geometry/error.hpp"
@@ -38,15 +40,17 @@ class AsciiStl {
         end_(begin_ + bytes.size()),
         context_(context),
         // Writers take some 200 bytes a facet.
-        sink_(context, std::min<std::size_t>(bytes.size() / 200 + 1, kMostTriangles)) {
+        sink_(
+            context, [this](std::size_t count) { return room(count); },
+            std::min<std::size_t>(bytes.size() / 200 + 1, kMostTriangles)) {
     if (std::string_view(begin_, bytes.size()).starts_with("\xEF\xBB\xBF")) at_ += 3;
   }
 
   /// What was read of it.
   struct Result {
-    Mesh mesh;
+    std::vector<FloatPoint> vertices;
+    std::vector<std::array<std::uint32_t, 3>> triangles;
     std::size_t facets = 0;            ///< left out ones included
-    std::size_t dropped = 0;           ///< left out
     std::optional<bool> inside_solid;  ///< at the end; nothing if no solid began or ended
     std::string cut;                   ///< a warning, if it ends inside a facet
   };
@@ -63,10 +67,16 @@ class AsciiStl {
         pass_name();
       }
     }
-    return {sink_.take_mesh(), sink_.seen(), sink_.dropped(), inside_solid_, cut_};
+    std::vector<FloatPoint> vertices = sink_.take_vertices();
+    return {std::move(vertices), std::move(triangles_), sink_.seen(), inside_solid_, cut_};
   }
 
  private:
+  [[nodiscard]] std::array<std::uint32_t, 3>* room(std::size_t count) {
+    triangles_.resize(triangles_.size() + count);
+    return triangles_.data() + triangles_.size() - count;
+  }
+
   [[noreturn]] void refuse(const std::string& complaint) const {
     refuse_model(context_.name, complaint);
   }
@@ -208,6 +218,7 @@ class AsciiStl {
   const char* end_;
   std::string_view word_;
   const ReadContext& context_;
+  std::vector<std::array<std::uint32_t, 3>> triangles_;
   FacetSink sink_;
   std::optional<bool> inside_solid_;
   std::string cut_;  ///< a warning about how the file ends
@@ -271,19 +282,28 @@ std::vector<AsciiStl::Result> read_sections(std::span<const char> bytes,
 
 RawMesh read_ascii_stl(std::span<const char> bytes, const ReadContext& context) {
   std::vector<AsciiStl::Result> results = read_sections(bytes, context);
-  std::vector<Mesh> parts;
+  std::vector<WeldedPart> parts;
+  std::vector<std::size_t> end;  // of the parts' triangles among all
+  std::size_t triangles = 0;
   std::size_t facets = 0;
-  std::size_t dropped = 0;
   bool inside_solid = false;
   for (AsciiStl::Result& result : results) {
-    parts.push_back(std::move(result.mesh));
+    parts.push_back({std::move(result.vertices), result.triangles});
+    end.push_back(triangles += result.triangles.size());
     facets += result.facets;
-    dropped += result.dropped;
     inside_solid = result.inside_solid.value_or(inside_solid);
   }
   if (facets == 0) refuse_model(context.name, "an ASCII STL file without any whole facet");
   refuse_too_many_triangles(context.name, facets);
-  RawMesh raw = join_stl_parts(std::move(parts), dropped, context.parallel_for);
+  RawMesh raw;
+  raw.single_precision = true;
+  raw.mesh.vertices = join_parts(parts, context.parallel_for);
+  resize_large(raw.mesh.triangles, triangles, context.parallel_for);
+  context.parallel_for(results.size(), [&](std::size_t i) {
+    const auto& own = results[i].triangles;
+    std::copy(own.begin(), own.end(), raw.mesh.triangles.data() + (end[i] - own.size()));
+  });
+  warn_of_dropped(facets - triangles, raw.warnings);
   const std::string& cut = results.back().cut;
   if (!cut.empty()) {
     raw.warnings.push_back(cut);

@@ -8,41 +8,51 @@
 namespace routebench::models {
 namespace {
 
-constexpr std::size_t kFewestSlots = 64;
+constexpr std::size_t kFewestSlots = 256;
+
+bool are_same(const Point3& a, const Point3& b) noexcept { return a == b; }
+
+/// Without negative zeros points are equal where all their bits are: one branch instead of three.
+bool are_same(const FloatPoint& a, const FloatPoint& b) noexcept {
+  const auto p = std::bit_cast<std::array<std::uint32_t, 3>>(a);
+  const auto q = std::bit_cast<std::array<std::uint32_t, 3>>(b);
+  return ((p[0] ^ q[0]) | (p[1] ^ q[1]) | (p[2] ^ q[2])) == 0;
+}
 
 }  // namespace
 
-VertexWelder::VertexWelder(std::size_t expected)
+template <typename Point>
+VertexWelder<Point>::VertexWelder(std::size_t expected)
     : slots_(std::bit_ceil(std::max(kFewestSlots, expected * 2))), mask_(slots_.size() - 1) {
   vertices_.reserve(expected);
 }
 
-void VertexWelder::weld(std::span<Point3> points, std::uint32_t* indices) {
+template <typename Point>
+void VertexWelder<Point>::weld(std::span<Point> points, std::uint32_t* indices) {
   std::array<std::uint32_t, kBatch> tags;  // written before it is read
+  for (Point& point : points) point = without_negative_zeros(point);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    Point3& p = points[i];
-    p = {p.x + 0.0, p.y + 0.0, p.z + 0.0};  // -0.0 + 0.0 is 0.0
-    tags[i] = tag_of(p);
+    tags[i] = tag_of(points[i]);
     __builtin_prefetch(&slots_[tags[i] & mask_]);
   }
-  for (std::size_t i = 0; i < points.size(); ++i) indices[i] = find_or_add(points[i], tags[i]);
-}
-
-std::uint32_t VertexWelder::find_or_add(const Point3& point, std::uint32_t tag) {
-  std::size_t place = tag & mask_;
-  while (slots_[place].vertex != 0) {
-    const Slot& slot = slots_[place];
-    if (slot.tag == tag && vertices_[slot.vertex - 1] == point) return slot.vertex - 1;
-    place = (place + 1) & mask_;
+  if (vertices_.size() + points.size() > slots_.size() / 8 * 5) grow();
+  Slot* const slots = slots_.data();
+  const std::size_t mask = mask_;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    std::size_t place = tags[i] & mask;
+    while (slots[place].vertex != 0 && !(slots[place].tag == tags[i] &&
+                                         are_same(vertices_[slots[place].vertex - 1], points[i])))
+      place = (place + 1) & mask;
+    if (slots[place].vertex == 0) {
+      vertices_.push_back(points[i]);
+      slots[place] = {tags[i], static_cast<std::uint32_t>(vertices_.size())};
+    }
+    indices[i] = slots[place].vertex - 1;
   }
-  vertices_.push_back(point);
-  const auto number = static_cast<std::uint32_t>(vertices_.size());
-  slots_[place] = {tag, number};
-  if (vertices_.size() > slots_.size() / 8 * 5) grow();
-  return number - 1;
 }
 
-void VertexWelder::grow() {
+template <typename Point>
+void VertexWelder<Point>::grow() {
   const std::vector<Slot> old = std::exchange(slots_, std::vector<Slot>(slots_.size() * 2));
   mask_ = slots_.size() - 1;
   for (const Slot& slot : old) {
@@ -53,16 +63,20 @@ void VertexWelder::grow() {
   }
 }
 
-std::vector<Point3> VertexWelder::take_vertices() {
+template <typename Point>
+std::vector<Point> VertexWelder<Point>::take_vertices() {
   slots_.assign(kFewestSlots, Slot{});
   mask_ = kFewestSlots - 1;
   return std::exchange(vertices_, {});
 }
 
+template class VertexWelder<Point3>;
+template class VertexWelder<FloatPoint>;
+
 void weld_mesh(Mesh& mesh) {
   constexpr std::uint32_t kUnused = std::numeric_limits<std::uint32_t>::max();
   std::vector<std::uint32_t> number(mesh.vertices.size(), kUnused);
-  VertexWelder welder(mesh.vertices.size());
+  VertexWelder<Point3> welder(mesh.vertices.size());
   for (auto& triangle : mesh.triangles) {
     for (std::uint32_t& corner : triangle) {
       std::uint32_t& welded = number[corner];

@@ -12,10 +12,39 @@
 
 namespace routebench::models {
 
-/// Gives equal points equal numbers, in order of first appearance.
+/// A point as STL has it.
+using FloatPoint = std::array<float, 3>;
+
+/// The same without negative zeros: -0.0 + 0.0 is 0.0.
+[[nodiscard]] inline Point3 without_negative_zeros(const Point3& p) noexcept {
+  return {p.x + 0.0, p.y + 0.0, p.z + 0.0};
+}
+[[nodiscard]] inline FloatPoint without_negative_zeros(const FloatPoint& p) noexcept {
+  return {p[0] + 0.0F, p[1] + 0.0F, p[2] + 0.0F};
+}
+
+/// 32 bits of a hash of a point without negative zeros. Its low bits choose a slot.
+[[nodiscard]] inline std::uint32_t tag_of(const Point3& point) noexcept {
+  std::uint64_t h = std::bit_cast<std::uint64_t>(point.x) * 0x9E3779B97F4A7C15U;
+  h = std::rotl(h, 29) ^ std::bit_cast<std::uint64_t>(point.y);
+  h *= 0xBF58476D1CE4E5B9U;
+  h = std::rotl(h, 31) ^ std::bit_cast<std::uint64_t>(point.z);
+  h *= 0x94D049BB133111EBU;
+  return static_cast<std::uint32_t>(h >> 32U);
+}
+[[nodiscard]] inline std::uint32_t tag_of(const FloatPoint& point) noexcept {
+  const auto bits = std::bit_cast<std::array<std::uint32_t, 3>>(point);
+  std::uint64_t h = (std::uint64_t{bits[1]} << 32U | bits[0]) * 0x9E3779B97F4A7C15U;
+  h = std::rotl(h, 29) ^ bits[2];
+  h *= 0xBF58476D1CE4E5B9U;
+  return static_cast<std::uint32_t>(h >> 32U);
+}
+
+/// Gives equal points (Point3 or FloatPoint) equal numbers, in order of first appearance.
 ///
 /// An open-addressing table that grows with the number of distinct points, so that no count of a
 /// file is trusted. Points come in batches: all their slots are fetched from memory at once.
+template <typename Point>
 class VertexWelder {
  public:
   static constexpr std::size_t kBatch = 48;
@@ -25,20 +54,10 @@ class VertexWelder {
 
   /// Replaces negative zeros in `points` by zeros and writes each point's number to `indices`.
   /// Takes at most kBatch finite points; the distinct ones in all must stay below 2^32 - 1.
-  void weld(std::span<Point3> points, std::uint32_t* indices);
-
-  /// 32 bits of a hash of a point without negative zeros. Its low bits choose the slot.
-  [[nodiscard]] static std::uint32_t tag_of(const Point3& point) noexcept {
-    std::uint64_t h = std::bit_cast<std::uint64_t>(point.x) * 0x9E3779B97F4A7C15U;
-    h = std::rotl(h, 29) ^ std::bit_cast<std::uint64_t>(point.y);
-    h *= 0xBF58476D1CE4E5B9U;
-    h = std::rotl(h, 31) ^ std::bit_cast<std::uint64_t>(point.z);
-    h *= 0x94D049BB133111EBU;
-    return static_cast<std::uint32_t>(h >> 32U);
-  }
+  void weld(std::span<Point> points, std::uint32_t* indices);
 
   /// The distinct points; the welder is empty afterwards.
-  [[nodiscard]] std::vector<Point3> take_vertices();
+  [[nodiscard]] std::vector<Point> take_vertices();
 
  private:
   /// A part of the hash, which also gives the place, and the vertex number + 1; 0 is a free slot.
@@ -47,13 +66,15 @@ class VertexWelder {
     std::uint32_t vertex = 0;
   };
 
-  [[nodiscard]] std::uint32_t find_or_add(const Point3& point, std::uint32_t tag);
   void grow();
 
   std::vector<Slot> slots_;
   std::size_t mask_;
-  std::vector<Point3> vertices_;
+  std::vector<Point> vertices_;
 };
+
+extern template class VertexWelder<Point3>;
+extern template class VertexWelder<FloatPoint>;
 
 /// Welds the vertices of an indexed mesh, in place, and drops those that no triangle uses.
 void weld_mesh(Mesh& mesh);

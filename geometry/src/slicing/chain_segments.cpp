@@ -35,7 +35,7 @@ class CutsByEdge {
 
   /// False if another cut begins on the same edge.
   [[nodiscard]] bool insert(std::uint32_t cut) {
-    std::uint32_t& slot = slots_[slot_of(cuts_[cut].from)];
+    std::uint32_t& slot = slots_[slot_of(cuts_[cut].from())];
     if (slot != kNone) return false;
     slot = cut;
     return true;
@@ -46,7 +46,7 @@ class CutsByEdge {
   /// The slot that holds the edge's cut, or the free one where it would stand.
   [[nodiscard]] std::size_t slot_of(EdgeKey edge) const {
     std::size_t slot = edge * 0x9E3779B97F4A7C15u >> shift_;
-    while (slots_[slot] != kNone && cuts_[slots_[slot]].from != edge)
+    while (slots_[slot] != kNone && cuts_[slots_[slot]].from() != edge)
       slot = (slot + 1) & (slots_.size() - 1);
     return slot;
   }
@@ -57,10 +57,15 @@ class CutsByEdge {
 };
 
 /// The rings, if the edges lead from every cut to exactly one other.
-std::optional<std::vector<Ring>> chain_by_edges(std::span<const Cut> cuts) {
+std::optional<std::vector<Ring>> chain_by_edges(std::span<const Cut> cuts, const Mesh& mesh,
+                                                double z_mm) {
   CutsByEdge by_edge(cuts);
-  for (std::uint32_t cut = 0; cut < cuts.size(); ++cut)
+  for (std::uint32_t cut = 0; cut < cuts.size(); ++cut) {
     if (!by_edge.insert(cut)) return std::nullopt;
+    // Until they are needed, on the way around, they will have come.
+    __builtin_prefetch(&mesh.vertices[cuts[cut].alone].z);
+    __builtin_prefetch(&mesh.vertices[cuts[cut].from_end].z);
+  }
 
   std::vector<Ring> rings;
   std::vector<bool> used(cuts.size());
@@ -72,8 +77,8 @@ std::optional<std::vector<Ring>> chain_by_edges(std::span<const Cut> cuts) {
     do {
       if (cut == kNone || used[cut]) return std::nullopt;
       used[cut] = true;
-      points.push_back(cuts[cut].start);
-      cut = by_edge.find(cuts[cut].to);
+      points.push_back(cut_point(mesh, cuts[cut].from(), z_mm));
+      cut = by_edge.find(cuts[cut].to());
     } while (cut != first);
     add_ring(points, rings);
   }
@@ -166,7 +171,7 @@ Contours chain_by_points(std::span<const Cut> cuts, const Mesh& mesh, double z_m
   std::vector<Segment> segments;
   segments.reserve(cuts.size());
   for (const Cut& cut : cuts) {
-    const Segment segment{cut.start, cut_point(mesh, cut.to, z_mm)};
+    const Segment segment{cut_point(mesh, cut.from(), z_mm), cut_point(mesh, cut.to(), z_mm)};
     if (segment.from != segment.to) segments.push_back(segment);
   }
   return SegmentGraph(std::move(segments)).decompose();
@@ -175,7 +180,8 @@ Contours chain_by_points(std::span<const Cut> cuts, const Mesh& mesh, double z_m
 }  // namespace
 
 Contours chain_cuts(std::span<const Cut> cuts, const Mesh& mesh, double z_mm) {
-  if (std::optional<std::vector<Ring>> rings = chain_by_edges(cuts)) return {std::move(*rings), {}};
+  if (std::optional<std::vector<Ring>> rings = chain_by_edges(cuts, mesh, z_mm))
+    return {std::move(*rings), {}};
   return chain_by_points(cuts, mesh, z_mm);
 }
 

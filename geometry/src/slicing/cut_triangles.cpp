@@ -7,14 +7,14 @@
 #include <tuple>
 #include <utility>
 
+#include "model/blocks.hpp"
 #include "routebench/geometry/error.hpp"
 #include "routebench/geometry/grid.hpp"
 
 namespace routebench::slicing {
 namespace {
 
-constexpr std::size_t kMaxCuts = std::size_t{1} << 27;  // 4 GiB
-constexpr std::size_t kVerticesPerBlock = std::size_t{1} << 16;
+constexpr std::size_t kMaxCuts = std::size_t{1} << 27;  // 1.5 GiB
 constexpr std::size_t kTrianglesPerBlock = std::size_t{1} << 16;
 constexpr std::size_t kMaxBlockCursors = std::size_t{1} << 22;  // 32 MiB
 
@@ -30,17 +30,17 @@ struct Span {
 class LevelledMesh {
  public:
   LevelledMesh(const Mesh& mesh, const Planes& planes, const ParallelFor& parallel_for)
-      : mesh_(mesh), planes_(planes), levels_(mesh.vertices.size()) {
-    const std::size_t blocks = (levels_.size() + kVerticesPerBlock - 1) / kVerticesPerBlock;
-    parallel_for(blocks, [&](std::size_t block) {
-      const std::size_t end = std::min(levels_.size(), (block + 1) * kVerticesPerBlock);
-      for (std::size_t v = block * kVerticesPerBlock; v < end; ++v)
-        levels_[v] = planes.level(mesh.vertices[v].z);
-    });
+      : mesh_(mesh),
+        planes_(static_cast<std::size_t>(planes.count)),
+        levels_(mesh.vertices.size()) {
+    const auto find_levels = [&](std::size_t, std::size_t begin, std::size_t end) {
+      for (std::size_t v = begin; v < end; ++v) levels_[v] = planes.level(mesh.vertices[v].z);
+    };
+    models::for_each_block(levels_.size(), parallel_for, find_levels);
   }
 
   [[nodiscard]] std::size_t triangles() const { return mesh_.triangles.size(); }
-  [[nodiscard]] std::size_t planes() const { return static_cast<std::size_t>(planes_.count); }
+  [[nodiscard]] std::size_t planes() const { return planes_; }
 
   [[nodiscard]] Span span(std::size_t triangle) const {
     const Triangle& corners = mesh_.triangles[triangle];
@@ -53,26 +53,21 @@ class LevelledMesh {
   /// leads down through the plane and one leads up; seen from outside the triangle runs
   /// counter-clockwise, so the line from the first to the second has the material on its left.
   [[nodiscard]] Cut cut(std::size_t triangle, int plane) const {
-    static constexpr std::array<std::uint8_t, 7> kDown{0, 0, 1, 1, 2, 0, 2};
-    static constexpr std::array<std::uint8_t, 7> kUp{0, 2, 0, 2, 1, 1, 0};
     const Triangle& corners = mesh_.triangles[triangle];
-    const auto above = [&](std::size_t corner) {
-      return levels_[corners[corner]] > plane ? 1u : 0u;
-    };
-    const unsigned corners_above = above(0) | above(1) << 1 | above(2) << 2;
-    const EdgeKey from = edge(corners, kDown[corners_above]);
-    return {from, edge(corners, kUp[corners_above]), cut_point(mesh_, from, planes_.z_mm(plane))};
+    const auto above = [&](std::size_t corner) { return levels_[corners[corner]] > plane; };
+    const bool a = above(0), b = above(1), c = above(2);
+    const std::size_t alone = b == c ? 0 : a == c ? 1 : 2;
+    const std::size_t next = kNext[alone], last = kNext[next];
+    return above(alone) ? Cut{corners[alone], corners[next], corners[last]}
+                        : Cut{corners[alone], corners[last], corners[next]};
   }
 
  private:
-  static EdgeKey edge(const Triangle& corners, std::size_t begin) {
-    const auto [low, high] = std::minmax(corners[begin], corners[begin == 2 ? 0 : begin + 1]);
-    return EdgeKey{low} << 32 | high;
-  }
+  static constexpr std::array<std::size_t, 3> kNext{1, 2, 0};
 
   const Mesh& mesh_;
-  const Planes& planes_;
-  std::vector<int> levels_;
+  std::size_t planes_;
+  LargeVector<int> levels_;
 };
 
 /// Consecutive triangles that one call of a parallel loop handles. There are as many blocks as the

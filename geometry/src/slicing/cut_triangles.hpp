@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "large_vector.hpp"
 #include "routebench/geometry/parallel.hpp"
 #include "routebench/geometry/slice.hpp"
 #include "routebench/geometry/types.hpp"
@@ -29,17 +30,25 @@ struct Planes {
 /// Names a mesh edge: the smaller vertex index in the upper half, the larger one in the lower.
 using EdgeKey = std::uint64_t;
 
-/// Where one triangle meets one plane: a straight line from `start` on edge `from` to edge `to`,
-/// the material on its left. The end is the start of the neighbouring triangle's cut.
+[[nodiscard]] constexpr EdgeKey edge_key(std::uint32_t v, std::uint32_t w) noexcept {
+  return v < w ? EdgeKey{v} << 32 | w : EdgeKey{w} << 32 | v;
+}
+
+/// Where one triangle meets one plane: a straight line from one edge to another, the material on
+/// its left. Both edges end at the vertex that lies alone on its side of the plane. The line's end
+/// is the beginning of the neighbouring triangle's.
 struct Cut {
-  EdgeKey from = 0;
-  EdgeKey to = 0;
-  Point2 start;
+  std::uint32_t alone;
+  std::uint32_t from_end;
+  std::uint32_t to_end;
+
+  [[nodiscard]] EdgeKey from() const noexcept { return edge_key(alone, from_end); }
+  [[nodiscard]] EdgeKey to() const noexcept { return edge_key(alone, to_end); }
 };
 
 /// The cuts of all layers, layer after layer.
 struct CutTable {
-  std::vector<Cut> cuts;
+  LargeVector<Cut> cuts;
   std::vector<std::size_t> begin;  ///< of each layer in `cuts`, and the end of the last one
 
   [[nodiscard]] std::span<const Cut> layer(std::size_t index) const {

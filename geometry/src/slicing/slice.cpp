@@ -7,6 +7,7 @@
 #include <span>
 #include <utility>
 
+#include "model/blocks.hpp"
 #include "routebench/geometry/error.hpp"
 #include "routebench/geometry/region.hpp"
 #include "routebench/geometry/simplify.hpp"
@@ -57,22 +58,38 @@ std::string counted(std::size_t count, const std::string& noun) {
   return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
 }
 
-void check_mesh(const Mesh& mesh, const std::string& model_name) {
-  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
-    const Point3& p = mesh.vertices[v];
-    // Written so that NaN fails too.
-    if (!(std::abs(p.x) <= kMaxCoordinateMm && std::abs(p.y) <= kMaxCoordinateMm &&
-          std::abs(p.z) <= kMaxCoordinateMm))
-      refuse(model_name, "vertex " + std::to_string(v) + " at x = " + text(p.x) +
-                             ", y = " + text(p.y) + ", z = " + text(p.z) +
-                             " mm: coordinates must be numbers of at most 1000 m");
-  }
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-    for (const std::uint32_t corner : mesh.triangles[t])
-      if (corner >= mesh.vertices.size())
-        refuse(model_name, "triangle " + std::to_string(t) + " names vertex " +
-                               std::to_string(corner) + ", but there are only " +
-                               std::to_string(mesh.vertices.size()));
+void check_vertex(const Mesh& mesh, std::size_t v, const std::string& model_name) {
+  const Point3& p = mesh.vertices[v];
+  // Written so that NaN fails too.
+  if (!(std::abs(p.x) <= kMaxCoordinateMm && std::abs(p.y) <= kMaxCoordinateMm &&
+        std::abs(p.z) <= kMaxCoordinateMm))
+    refuse(model_name, "vertex " + std::to_string(v) + " at x = " + text(p.x) +
+                           ", y = " + text(p.y) + ", z = " + text(p.z) +
+                           " mm: coordinates must be numbers of at most 1000 m");
+}
+
+/// Returns the height of the highest vertex that belongs to a triangle; at least 0.
+double checked_top_mm(const Mesh& mesh, const std::string& model_name,
+                      const ParallelFor& parallel_for) {
+  const auto check = [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) check_vertex(mesh, v, model_name);
+  };
+  models::for_each_block(mesh.vertices.size(), parallel_for, check);
+  std::vector<double> tops_mm(models::block_count(mesh.triangles.size()) + 1);
+  const auto find_top = [&](std::size_t block, std::size_t begin, std::size_t end) {
+    double top_mm = 0;
+    for (std::size_t t = begin; t < end; ++t)
+      for (const std::uint32_t corner : mesh.triangles[t]) {
+        if (corner >= mesh.vertices.size())
+          refuse(model_name, "triangle " + std::to_string(t) + " names vertex " +
+                                 std::to_string(corner) + ", but there are only " +
+                                 std::to_string(mesh.vertices.size()));
+        top_mm = std::max(top_mm, mesh.vertices[corner].z);
+      }
+    tops_mm[block] = top_mm;
+  };
+  models::for_each_block(mesh.triangles.size(), parallel_for, find_top);
+  return *std::max_element(tops_mm.begin(), tops_mm.end());
 }
 
 void check_options(const SliceOptions& options) {
@@ -90,11 +107,8 @@ void check_options(const SliceOptions& options) {
                                           ": must be a number of at least 0, for example 0.001");
 }
 
-/// The planes below the highest vertex that belongs to a triangle.
-Planes planes_through(const Mesh& mesh, double layer_height_mm, const std::string& model_name) {
-  double top_mm = 0;
-  for (const auto& triangle : mesh.triangles)
-    for (const std::uint32_t corner : triangle) top_mm = std::max(top_mm, mesh.vertices[corner].z);
+/// The planes below a height.
+Planes planes_below(double top_mm, double layer_height_mm, const std::string& model_name) {
   if (top_mm / layer_height_mm > kMaxLayers)
     refuse(model_name, "layers of " + text(layer_height_mm) + " mm would be more than " +
                            std::to_string(kMaxLayers) + ": take at least " +
@@ -234,17 +248,17 @@ SliceMethod slice_method(std::string_view name) {
 VoxelContainer voxel_container(const Mesh& mesh, const SliceOptions& options,
                                const std::string& model_name) {
   check_options(options);
-  check_mesh(mesh, model_name);
+  const double top_mm = checked_top_mm(mesh, model_name, serial_for);
   const slicing::VoxelFrame frame = checked_frame(
-      mesh, planes_through(mesh, options.layer_height_mm, model_name), options.cell_mm, model_name);
+      mesh, planes_below(top_mm, options.layer_height_mm, model_name), options.cell_mm, model_name);
   return {frame.count, frame.bytes()};
 }
 
 Slices slice_mesh(const Mesh& mesh, const SliceOptions& options, const std::string& model_name,
                   const ParallelFor& parallel_for) {
   check_options(options);
-  check_mesh(mesh, model_name);
-  const Planes planes = planes_through(mesh, options.layer_height_mm, model_name);
+  const Planes planes = planes_below(checked_top_mm(mesh, model_name, parallel_for),
+                                     options.layer_height_mm, model_name);
   if (options.method == SliceMethod::kVoxel)
     return slice_by_voxels(mesh, planes, options, model_name, parallel_for);
   const CutTable table = cut_triangles(mesh, planes, options.method, model_name, parallel_for);
