@@ -160,8 +160,8 @@ std::vector<double> EdgeGrid::crossings(Point2 a, Point2 b) const {
 
 bool EdgeGrid::meets(Point2 a, Point2 b) const {
   if (edges_.empty()) return false;
-  const auto [left, right] = std::minmax({a.x, b.x});
-  const auto [lower, upper] = std::minmax({a.y, b.y});
+  const Point2 lower{std::min(a.x, b.x) - kOnEdgeMm, std::min(a.y, b.y) - kOnEdgeMm};
+  const Point2 upper{std::max(a.x, b.x) + kOnEdgeMm, std::max(a.y, b.y) + kOnEdgeMm};
   // Whether both points lie on one side of line pq, further from it than what is on it.
   const auto on_one_side = [](Point2 p, Point2 q, Point2 first, Point2 second) {
     const Point2 way = q - p;
@@ -175,10 +175,8 @@ bool EdgeGrid::meets(Point2 a, Point2 b) const {
     const auto c = static_cast<std::size_t>(cell);
     for (std::uint32_t i = cells_.begin[c]; i < cells_.begin[c + 1] && !met; ++i) {
       const Edge& edge = edges_[cells_.items[i]];
-      if (std::max(edge.a.x, edge.b.x) < left - kOnEdgeMm ||
-          std::min(edge.a.x, edge.b.x) > right + kOnEdgeMm ||
-          std::max(edge.a.y, edge.b.y) < lower - kOnEdgeMm ||
-          std::min(edge.a.y, edge.b.y) > upper + kOnEdgeMm)
+      if (std::max(edge.a.x, edge.b.x) < lower.x || std::min(edge.a.x, edge.b.x) > upper.x ||
+          std::max(edge.a.y, edge.b.y) < lower.y || std::min(edge.a.y, edge.b.y) > upper.y)
         continue;
       met = !on_one_side(a, b, edge.a, edge.b) && !on_one_side(edge.a, edge.b, a, b);
     }

@@ -10,6 +10,7 @@
 #include "routebench/geometry/region.hpp"
 #include "routebench/geometry/slice.hpp"
 #include "routebench/geometry/solid.hpp"
+#include "routebench/geometry/vec.hpp"
 
 namespace {
 
