@@ -1,7 +1,6 @@
 #include "overlay/planar_edges.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdlib>
 #include <tuple>
 #include <utility>

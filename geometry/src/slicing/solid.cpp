@@ -91,8 +91,8 @@ struct SkinFinder::Impl {
                                std::vector<overlay::GridPolygon>& skins) const {
     const Index own = index_of({&polygon, 1});
     if (!own) return false;
-    // Most layers hold the polygon. The others are cut one after the other: sides of many layers
-    // that nearly coincide would cross each other over and over.
+    // Most layers hold the polygon. The others are cut one after the other: at once, the sides of
+    // all would be cut at each other too.
     std::vector<std::size_t> needed;
     for (const std::size_t other : around) {
       if (!indices[other] && !layers[other].polygons.empty()) return false;

@@ -38,7 +38,8 @@ enum class Join { kMiter, kRound };
                               Join join = Join::kMiter);
 
 /// What is left of polygons after everything narrower than width_mm is taken away (opening: shrink,
-/// then grow, cut to the original).
+/// then grow, cut to the original). What is left reaches 15 um into the narrow parts, and its other
+/// sides are the original ones to the unit.
 [[nodiscard]] Polygons without_thin_parts(const Polygons& polygons, double width_mm);
 
 [[nodiscard]] Polygons unite(const Polygons& a, const Polygons& b);
