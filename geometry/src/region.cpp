@@ -233,8 +233,8 @@ cl::Path cleaned(const cl::Path& path) {
   return to_clipper(simplified_ring(std::move(ring), kCleanMm));
 }
 
-/// Whether a ring has room between two lines so far apart: then nothing is left of it when its
-/// boundary moves inwards by half of that. Says no rather than look at every direction.
+}  // namespace
+
 bool fits_between_lines(const Ring& ring, double apart_mm) {
   if (apart_mm <= 0) return false;
   const Point2 origin = ring.front();
@@ -273,8 +273,6 @@ bool fits_between_lines(const Ring& ring, double apart_mm) {
   }
   return highest - lowest < apart_mm * std::sqrt(dot(along, along));
 }
-
-}  // namespace
 
 Polygons offset(const Polygons& polygons, double distance_mm, Join join) {
   if (distance_mm == 0 || polygons.empty()) return polygons;

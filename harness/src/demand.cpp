@@ -31,7 +31,10 @@ Polygons rest_of(const Polygons& inside, const Polygons& dense) {
 }  // namespace
 
 Polygons inside_of(const Layer& layer, const Task& task) {
-  Polygons inside = layer.polygons;
+  const double walls_mm = task.perimeters * task.spacing_mm();
+  Polygons inside;
+  for (const Polygon& polygon : layer.polygons)
+    if (!fits_between_lines(polygon.outer, 2 * walls_mm)) inside.push_back(polygon);
   // One wall at a time, as walls are laid: an offset by many widths at once is far slower and, in
   // narrow places, another region.
   for (int wall = 0; wall < task.perimeters && !inside.empty(); ++wall)

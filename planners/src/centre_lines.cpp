@@ -20,6 +20,8 @@ namespace {
 constexpr double kWidthRatio = 1.25;  // of the places that one stroke takes
 constexpr double kStraightMm = 0.002;
 constexpr double kTouchMm = 0.004;
+// Places just wide enough must leave a core that offsets do not take for noise.
+constexpr double kCoreMm = 0.01;
 // A part is compact if it is at most so many of the greatest widths long.
 constexpr double kCompact = 2;
 constexpr int kAxisSteps = 12;  // either way from its centre
@@ -68,13 +70,13 @@ class StrokeCutter {
   }
 
   /// Lays the largest bead on the long axis of a compact part; false if it is none.
-  bool cut_compact(const Polygon& polygon) {
-    if (rule_.width != CentreLineWidth::kInscribed || !polygon.holes.empty()) return false;
-    const Box2 box = bounding_box({polygon});
-    const double extent_mm = distance(box.lower, box.upper);
+  bool cut_compact(const Polygon& core, double inwards_mm) {
+    if (rule_.width != CentreLineWidth::kInscribed || !core.holes.empty()) return false;
+    const Box2 box = bounding_box({core});
+    const double extent_mm = distance(box.lower, box.upper) + 2 * inwards_mm;
     if (extent_mm > kCompact * rule_.max_width_mm) return false;
     Point2 centre, along;
-    axis_of(polygon.outer, centre, along);
+    axis_of(core.outer, centre, along);
     if (!edges_.contains(centre)) return false;
     MiddleLine line;
     line.free_front = line.free_back = true;
@@ -99,13 +101,13 @@ class StrokeCutter {
   }
 
   /// Lays a dot at the place that is farthest from the boundary, if that is wide enough.
-  void dot(const Polygon& polygon) {
-    const Box2 box = bounding_box({polygon});
-    const double extent_mm = distance(box.lower, box.upper);
+  void dot(const Polygon& core, double inwards_mm) {
+    const Box2 box = bounding_box({core});
+    const double extent_mm = distance(box.lower, box.upper) + 2 * inwards_mm;
     if (extent_mm < rule_.min_dot_mm) return;
-    Point2 deepest = polygon.outer.front();
+    Point2 deepest = core.outer.front();
     double radius_mm = 0;
-    for (const ChordalAxis::Chord& chord : chordal_axis(polygon, extent_mm / kDotSamples).chords) {
+    for (const ChordalAxis::Chord& chord : chordal_axis(core, extent_mm / kDotSamples).chords) {
       const double mm = edges_.distance_to_edge_mm(chord.middle, extent_mm).value_or(0);
       if (mm <= radius_mm) continue;
       radius_mm = mm;
@@ -278,15 +280,18 @@ std::vector<Stroke> centre_lines(const Polygons& thin, const CentreLineRule& rul
   // Beads are as wide as the polygons let them be, not their smoothed copies.
   const EdgeGrid edges(near_origin);
   StrokeCutter cutter(rule, edges, origin, strokes);
-  for (const Polygon& polygon : without_thin_parts(near_origin, rule.min_width_mm)) {
+  // What is wide enough is about the middle lines of what is left of it if its sides move inwards.
+  const double inwards_mm = std::max(rule.min_width_mm / 2 - kCoreMm, 0.0);
+  for (const Polygon& core : offset(near_origin, -inwards_mm)) {
     stop_if_asked(context);
-    const Box2 box = bounding_box({polygon});
-    if (distance(box.lower, box.upper) < std::min(rule.min_length_mm, rule.min_dot_mm)) continue;
+    const Box2 box = bounding_box({core});
+    const double extent_mm = distance(box.lower, box.upper) + 2 * inwards_mm;
+    if (extent_mm < std::min(rule.min_length_mm, rule.min_dot_mm)) continue;
     const std::size_t before = strokes.size();
-    if (!cutter.cut_compact(polygon))
-      for (const MiddleLine& line : middle_lines(polygon, edges, rule.max_width_mm))
+    if (!cutter.cut_compact(core, inwards_mm))
+      for (const MiddleLine& line : middle_lines(core, inwards_mm, edges, rule.max_width_mm))
         cutter.cut(line);
-    if (strokes.size() == before) cutter.dot(polygon);
+    if (strokes.size() == before) cutter.dot(core, inwards_mm);
   }
   return strokes;
 }

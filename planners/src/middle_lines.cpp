@@ -207,13 +207,13 @@ void trim_free_ends(MiddleLine& line) {
 
 }  // namespace
 
-std::vector<MiddleLine> middle_lines(const Polygon& polygon, const EdgeGrid& edges,
+std::vector<MiddleLine> middle_lines(const Polygon& core, double inwards_mm, const EdgeGrid& edges,
                                      double widest_mm) {
-  const double mean_width_mm = 2 * area_mm2(polygon) / perimeter_mm(Polygons{polygon});
+  const double mean_width_mm = 2 * (area_mm2(core) / perimeter_mm(Polygons{core}) + inwards_mm);
   const double step_mm =
       std::clamp(mean_width_mm, kLeastStepMm, std::max(kLeastStepMm, widest_mm / 2));
   std::vector<MiddleLine> lines =
-      PrunedAxis(chordal_axis(polygon, step_mm), edges, widest_mm).lines();
+      PrunedAxis(chordal_axis(core, step_mm), edges, widest_mm).lines();
   for (MiddleLine& line : lines) trim_free_ends(line);
   return lines;
 }

@@ -18,9 +18,10 @@ struct MiddleLine {
 
 /// The middle of a polygon without its spurs into corners. Lines end where three of them meet, and
 /// where the polygon ends.
-/// Takes   a polygon near the origin and its edges; distances from the boundary are told up to
-///         widest_mm.
-[[nodiscard]] std::vector<MiddleLine> middle_lines(const Polygon& polygon, const EdgeGrid& edges,
-                                                   double widest_mm);
+/// Takes   what is left of a polygon near the origin if its sides move inwards by inwards_mm, which
+///         has the same middle where it is that wide, and the edges of the polygon itself; distances
+///         from these are told up to widest_mm.
+[[nodiscard]] std::vector<MiddleLine> middle_lines(const Polygon& core, double inwards_mm,
+                                                   const EdgeGrid& edges, double widest_mm);
 
 }  // namespace routebench

@@ -195,8 +195,8 @@ bool holds(const Box2& outer, const Box2& inner) {
          outer.upper.x >= inner.upper.x && outer.upper.y >= inner.upper.y;
 }
 
-/// Adds a box to disjoint ones, as one with all that it meets.
-void add(Box2 box, std::vector<Box2>& boxes) {
+/// Adds a box to disjoint ones, as one with all that it meets, which is returned.
+Box2 add(Box2 box, std::vector<Box2>& boxes) {
   for (std::size_t i = 0; i < boxes.size();) {
     if (!meet(boxes[i], box)) {
       ++i;
@@ -208,6 +208,7 @@ void add(Box2 box, std::vector<Box2>& boxes) {
     i = 0;  // it may meet more now
   }
   boxes.push_back(box);
+  return box;
 }
 
 /// Cuts a ring off where `depth`, linear in the place, is negative.
@@ -228,12 +229,12 @@ Ring cut_off(const Ring& ring, const Depth& depth) {
 
 std::vector<Box2> doubtful_places(const Polygons& inset, const Polygons& area, double distance_mm,
                                   double slack_mm, double margin_mm) {
+  if (area.empty()) return {};
   std::vector<Box2> boxes;
   const Point2 margin{margin_mm, margin_mm};
+  const Box2 bounds = bounding_box(area);
   const auto all = [&]() -> std::vector<Box2> {
-    if (area.empty()) return {};
-    const Box2 box = bounding_box(area);
-    return {{snap(box.lower - margin), snap(box.upper + margin)}};
+    return {{snap(bounds.lower - margin), snap(bounds.upper + margin)}};
   };
   if (inset.empty()) return all();
   std::size_t corners = 0, doubts = 0;
@@ -243,7 +244,7 @@ std::vector<Box2> doubtful_places(const Polygons& inset, const Polygons& area, d
   }
   const auto visit = [&](Point2 p, bool has_inset) {
     if (has_inset) return true;
-    add({snap(p - margin), snap(p + margin)}, boxes);
+    if (holds(add({snap(p - margin), snap(p + margin)}, boxes), bounds)) return false;
     return ++doubts < kManyDoubts || doubts * kLargeShare < corners;
   };
   Follower follower(inset);

@@ -85,8 +85,7 @@ Box2 grown(const Box2& box, double mm) {
 /// What of an area is farther than `reach_mm` from what is laid. Most sides of the area are as far
 /// as that, and would cross those of what is laid, grown, at every corner.
 Polygons left_open(const Polygons& area, const Polygons& laid, double reach_mm) {
-  const Polygons left = subtract(area, offset(laid, reach_mm + kSideMm));
-  return left.empty() ? left : intersect(offset(left, kSideMm), area);
+  return subtract(area, offset(laid, reach_mm + kSideMm));
 }
 
 /// What a wall leaves open before it, of what the ones before it left.

@@ -37,6 +37,13 @@ enum class Join { kMiter, kRound };
 [[nodiscard]] Polygons offset(const Polygons& polygons, double distance_mm,
                               Join join = Join::kMiter);
 
+/// Whether a ring has room between two parallel lines so far apart: then nothing is left of it when
+/// its boundary moves inwards by half of that, in however many steps. Says no rather than look at
+/// every direction.
+/// Takes  at least one point.
+/// Cost   linear in points, far less than to move the boundary.
+[[nodiscard]] bool fits_between_lines(const Ring& ring, double apart_mm);
+
 /// What is left of polygons after everything narrower than width_mm is taken away (opening: shrink,
 /// then grow, cut to the original). What is left reaches 15 um into the narrow parts, and its other
 /// sides are the original ones to the unit.
