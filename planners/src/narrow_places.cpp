@@ -256,6 +256,35 @@ std::vector<Box2> doubtful_places(const Polygons& inset, const Polygons& area, d
   return boxes;
 }
 
+double length_within_mm(const Polygons& polygons, const Box2& box) {
+  double sum_mm = 0;
+  const auto add_ring = [&](const Ring& ring) {
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      const Point2 a = ring[i], b = ring[i + 1 < ring.size() ? i + 1 : 0];
+      double from = 0, to = 1;  // shares of the edge
+      const auto keep = [&](double in_a, double in_b) {
+        if (in_a < 0 && in_b < 0) to = from;
+        if ((in_a < 0) == (in_b < 0)) return;
+        const double at = in_a / (in_a - in_b);
+        if (in_a < 0)
+          from = std::max(from, at);
+        else
+          to = std::min(to, at);
+      };
+      keep(a.x - box.lower.x, b.x - box.lower.x);
+      keep(box.upper.x - a.x, box.upper.x - b.x);
+      keep(a.y - box.lower.y, b.y - box.lower.y);
+      keep(box.upper.y - a.y, box.upper.y - b.y);
+      if (from < to) sum_mm += (to - from) * distance(a, b);
+    }
+  };
+  for (const Polygon& polygon : polygons) {
+    add_ring(polygon.outer);
+    for (const Ring& hole : polygon.holes) add_ring(hole);
+  }
+  return sum_mm;
+}
+
 Polygons clipped(const Polygons& polygons, const Box2& box) {
   if (polygons.empty() || holds(box, bounding_box(polygons))) return polygons;
   std::vector<Ring> rings;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -159,6 +160,22 @@ bool is_strip(const Polygon& part, double reach_mm, const PlanContext& context) 
   return once >= kEnough * needed && std::abs(once - needed) < std::abs(twice - needed);
 }
 
+/// No strip with ends is shorter: is_strip's bound on what one line gives, solved for the length and
+/// at its least over widths up to `near_mm`.
+double shortest_strip_mm(double reach_mm, double near_mm, const PlanContext& context) {
+  const double spacing_mm = context.spacing_mm;
+  const double ends_mm2 = kEnough * std::numbers::pi * reach_mm * reach_mm;
+  // (ends + width (spacing + width)) / (beside + share width)
+  const double beside_mm = spacing_mm - 2 * kEnough * reach_mm, share = 1 - kEnough;
+  const double root =
+      beside_mm * beside_mm - share * (spacing_mm * beside_mm - share * ends_mm2);
+  const double width_mm =
+      std::clamp((std::sqrt(std::max(root, 0.0)) - beside_mm) / share, 0.0, near_mm);
+  const double gain_mm = beside_mm + share * width_mm;
+  return gain_mm > 0 ? (ends_mm2 + width_mm * (spacing_mm + width_mm)) / gain_mm
+                     : std::numeric_limits<double>::infinity();
+}
+
 }  // namespace
 
 double left_inside_mm(const Polygon& region, const PlanContext& context) {
@@ -173,9 +190,19 @@ double left_inside_mm(const Polygon& region, const PlanContext& context) {
 
 Polygons without_strips(const Polygons& region, const Polygons& next, double reach_mm,
                         double near_mm, const PlanContext& context) {
+  // Nearly all of a strip's boundary is the region's: its sides, but not its ends at wider parts.
+  // Strips round a hole have no ends and may have any length.
+  const bool has_holes = std::any_of(region.begin(), region.end(),
+                                     [](const Polygon& part) { return !part.holes.empty(); });
+  const double sides_mm =
+      has_holes ? 0 : 2 * (shortest_strip_mm(reach_mm, near_mm, context) - 2 * near_mm);
+  if (perimeter_mm(region) < sides_mm) return region;
   // A strip is several spacings long. So the next wall, if it goes everywhere, is proof enough.
   const double slack_mm = context.spacing_mm, margin_mm = kMarginSpacings * context.spacing_mm;
-  if (doubtful_places(next, region, context.spacing_mm, slack_mm, margin_mm).empty()) return region;
+  const std::vector<Box2> boxes =
+      doubtful_places(next, region, context.spacing_mm, slack_mm, margin_mm);
+  const auto has_room = [&](const Box2& box) { return length_within_mm(region, box) >= sides_mm; };
+  if (std::none_of(boxes.begin(), boxes.end(), has_room)) return region;
   const Polygons cores = offset(region, -near_mm / 2);
   Polygons strips;
   for (const Box2& box : doubtful_places(cores, region, near_mm / 2, slack_mm, margin_mm))
