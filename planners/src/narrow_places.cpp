@@ -53,11 +53,12 @@ class Follower {
     return ring_ != nullptr && squared_to(p, edge_) <= within_squared;
   }
 
-  /// Moves on along the ring as long as that leads nearer to p; the squared distance there.
-  double follow(Point2 p) {
+  /// Moves on along the ring as long as that leads nearer to p, until it is near enough; the squared
+  /// distance there.
+  double follow(Point2 p, double enough_squared) {
     double nearest = squared_to(p, edge_);
-    for (std::size_t ahead = 1; ahead <= kLookAhead; ++ahead) {
-      const std::size_t next = (edge_ + ahead) % ring_->size();
+    for (std::size_t ahead = 1; ahead <= kLookAhead && nearest > enough_squared; ++ahead) {
+      const std::size_t next = after(edge_, ahead);
       const double squared = squared_to(p, next);
       if (squared > nearest) continue;
       nearest = squared;
@@ -100,8 +101,13 @@ class Follower {
 
  private:
   [[nodiscard]] double squared_to(Point2 p, std::size_t edge) const {
-    const std::size_t end = edge + 1 < ring_->size() ? edge + 1 : 0;
-    return squared_distance(p, nearest_on_segment(p, (*ring_)[edge], (*ring_)[end]));
+    return squared_distance(p, nearest_on_segment(p, (*ring_)[edge], (*ring_)[after(edge, 1)]));
+  }
+
+  [[nodiscard]] std::size_t after(std::size_t edge, std::size_t ahead) const {
+    edge += ahead;
+    while (edge >= ring_->size()) edge -= ring_->size();
+    return edge;
   }
 
   std::vector<const Ring*> rings_;
@@ -148,7 +154,7 @@ class RingProof {
     const bool is_placed = searches_ > 0;
     if (is_placed && inset_.reaches(p, squared_reach(1))) return true;
     const double nearest = is_placed && inset_.is_somewhere()
-                               ? inset_.follow(p)
+                               ? inset_.follow(p, squared_reach(1))
                                : std::numeric_limits<double>::infinity();
     if (nearest <= squared_reach(1)) return true;
     const double reach = squared_reach(corner_reach(p, i));
