@@ -383,8 +383,7 @@ class GreedyShell final : public Planner {
     // Where gaps are left, a line would not take the wall's place.
     if (params_.thin == Thin::kDouble || params_.gaps == Gaps::kLeave) return regions[wall];
     const double place_mm = wall == 0 ? context.line_width_mm : context.spacing_mm;
-    return without_strips(regions[wall], wall + 1 < regions.size() ? regions[wall + 1] : Polygons{},
-                          place_mm / 2, near_mm, context);
+    return without_strips(regions[wall], place_mm / 2, near_mm, context);
   }
 
   /// Adds the wall round one part of its region. Where another one is asked for inside it and there

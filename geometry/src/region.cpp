@@ -187,14 +187,16 @@ double perimeter_mm(const Polygons& polygons) {
   return sum;
 }
 
+Box2 around(const Box2& a, const Box2& b) {
+  return {{std::min(a.lower.x, b.lower.x), std::min(a.lower.y, b.lower.y)},
+          {std::max(a.upper.x, b.upper.x), std::max(a.upper.y, b.upper.y)}};
+}
+
 Box2 bounding_box(const Polygons& polygons) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   Box2 box{{kInfinity, kInfinity}, {-kInfinity, -kInfinity}};
   for (const Polygon& polygon : polygons)
-    for (const Point2 p : polygon.outer) {
-      box.lower = {std::min(box.lower.x, p.x), std::min(box.lower.y, p.y)};
-      box.upper = {std::max(box.upper.x, p.x), std::max(box.upper.y, p.y)};
-    }
+    for (const Point2 p : polygon.outer) box = around(box, {p, p});
   return box;
 }
 

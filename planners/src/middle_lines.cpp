@@ -211,9 +211,8 @@ std::vector<MiddleLine> middle_lines(const Polygon& core, double inwards_mm, con
                                      double widest_mm) {
   const double mean_width_mm = 2 * (area_mm2(core) / perimeter_mm(Polygons{core}) + inwards_mm);
   const double step_mm =
-      std::clamp(mean_width_mm, kLeastStepMm, std::max(kLeastStepMm, widest_mm / 2));
-  std::vector<MiddleLine> lines =
-      PrunedAxis(chordal_axis(core, step_mm), edges, widest_mm).lines();
+      std::clamp(mean_width_mm, kLeastStepMm, std::max(kLeastStepMm, widest_mm / 2 - inwards_mm));
+  std::vector<MiddleLine> lines = PrunedAxis(chordal_axis(core, step_mm), edges, widest_mm).lines();
   for (MiddleLine& line : lines) trim_free_ends(line);
   return lines;
 }

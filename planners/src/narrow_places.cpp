@@ -24,12 +24,6 @@ constexpr int kSearches = 8;           // over the whole inset, for one ring of 
 constexpr std::size_t kManyDoubts = 32;
 constexpr std::size_t kLargeShare = 8;
 
-/// The least box around two.
-Box2 around(const Box2& a, const Box2& b) {
-  return {{std::min(a.lower.x, b.lower.x), std::min(a.lower.y, b.lower.y)},
-          {std::max(a.upper.x, b.upper.x), std::max(a.upper.y, b.upper.y)}};
-}
-
 /// A place that follows a point along rings.
 class Follower {
  public:
@@ -53,8 +47,8 @@ class Follower {
     return ring_ != nullptr && squared_to(p, edge_) <= within_squared;
   }
 
-  /// Moves on along the ring as long as that leads nearer to p, until it is near enough; the squared
-  /// distance there.
+  /// Moves on along the ring as long as that leads nearer to p, until it is near enough; the
+  /// squared distance there.
   double follow(Point2 p, double enough_squared) {
     double nearest = squared_to(p, edge_);
     for (std::size_t ahead = 1; ahead <= kLookAhead && nearest > enough_squared; ++ahead) {
@@ -260,35 +254,6 @@ std::vector<Box2> doubtful_places(const Polygons& inset, const Polygons& area, d
       if (!RingProof(hole, distance_mm, slack_mm, follower).look(visit)) return all();
   }
   return boxes;
-}
-
-double length_within_mm(const Polygons& polygons, const Box2& box) {
-  double sum_mm = 0;
-  const auto add_ring = [&](const Ring& ring) {
-    for (std::size_t i = 0; i < ring.size(); ++i) {
-      const Point2 a = ring[i], b = ring[i + 1 < ring.size() ? i + 1 : 0];
-      double from = 0, to = 1;  // shares of the edge
-      const auto keep = [&](double in_a, double in_b) {
-        if (in_a < 0 && in_b < 0) to = from;
-        if ((in_a < 0) == (in_b < 0)) return;
-        const double at = in_a / (in_a - in_b);
-        if (in_a < 0)
-          from = std::max(from, at);
-        else
-          to = std::min(to, at);
-      };
-      keep(a.x - box.lower.x, b.x - box.lower.x);
-      keep(box.upper.x - a.x, box.upper.x - b.x);
-      keep(a.y - box.lower.y, b.y - box.lower.y);
-      keep(box.upper.y - a.y, box.upper.y - b.y);
-      if (from < to) sum_mm += (to - from) * distance(a, b);
-    }
-  };
-  for (const Polygon& polygon : polygons) {
-    add_ring(polygon.outer);
-    for (const Ring& hole : polygon.holes) add_ring(hole);
-  }
-  return sum_mm;
 }
 
 Polygons clipped(const Polygons& polygons, const Box2& box) {

@@ -20,9 +20,6 @@ namespace routebench {
                                                 double distance_mm, double slack_mm,
                                                 double margin_mm);
 
-/// How much of the polygons' boundaries lies in a box. Cost   linear.
-[[nodiscard]] double length_within_mm(const Polygons& polygons, const Box2& box);
-
 /// The part of polygons that lies in a box with corners on the grid. Cost   linear, and a Boolean
 /// operation on what is in the box.
 [[nodiscard]] Polygons clipped(const Polygons& polygons, const Box2& box);

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "narrow_places.hpp"
+#include "near_sides.hpp"
 #include "routebench/geometry/grid.hpp"
 #include "routebench/geometry/region.hpp"
 #include "routebench/geometry/vec.hpp"
@@ -24,6 +25,9 @@ constexpr double kEnough = 0.85;
 constexpr double kStubMm = 0.03;
 /// What sides that would coincide are kept apart by: more than offsets are cleaned of.
 constexpr double kSideMm = 0.015;
+/// The sides of a strip are so much of its length apart along the boundary, where that is at its
+/// middle; there they are nearer to each other than it is wide anywhere.
+constexpr double kStripShare = 0.75;
 /// What is narrow is looked at so many spacings round about.
 constexpr double kMarginSpacings = 3;
 
@@ -160,15 +164,14 @@ bool is_strip(const Polygon& part, double reach_mm, const PlanContext& context) 
   return once >= kEnough * needed && std::abs(once - needed) < std::abs(twice - needed);
 }
 
-/// No strip with ends is shorter: is_strip's bound on what one line gives, solved for the length and
-/// at its least over widths up to `near_mm`.
+/// No strip with ends is shorter: is_strip's bound on what one line gives, solved for the length
+/// and at its least over widths up to `near_mm`.
 double shortest_strip_mm(double reach_mm, double near_mm, const PlanContext& context) {
   const double spacing_mm = context.spacing_mm;
   const double ends_mm2 = kEnough * std::numbers::pi * reach_mm * reach_mm;
   // (ends + width (spacing + width)) / (beside + share width)
   const double beside_mm = spacing_mm - 2 * kEnough * reach_mm, share = 1 - kEnough;
-  const double root =
-      beside_mm * beside_mm - share * (spacing_mm * beside_mm - share * ends_mm2);
+  const double root = beside_mm * beside_mm - share * (spacing_mm * beside_mm - share * ends_mm2);
   const double width_mm =
       std::clamp((std::sqrt(std::max(root, 0.0)) - beside_mm) / share, 0.0, near_mm);
   const double gain_mm = beside_mm + share * width_mm;
@@ -188,29 +191,23 @@ double left_inside_mm(const Polygon& region, const PlanContext& context) {
   return offset({region}, -(context.spacing_mm + line_mm) / 2).empty() ? left_mm : 0;
 }
 
-Polygons without_strips(const Polygons& region, const Polygons& next, double reach_mm,
-                        double near_mm, const PlanContext& context) {
-  // Nearly all of a strip's boundary is the region's: its sides, but not its ends at wider parts.
-  // Strips round a hole have no ends and may have any length.
-  const bool has_holes = std::any_of(region.begin(), region.end(),
-                                     [](const Polygon& part) { return !part.holes.empty(); });
-  const double sides_mm =
-      has_holes ? 0 : 2 * (shortest_strip_mm(reach_mm, near_mm, context) - 2 * near_mm);
-  if (perimeter_mm(region) < sides_mm) return region;
-  // A strip is several spacings long. So the next wall, if it goes everywhere, is proof enough.
+Polygons without_strips(const Polygons& region, double reach_mm, double near_mm,
+                        const PlanContext& context) {
+  const double width_mm = near_mm + 2 * kSideMm;
+  const double length_mm = kStripShare * shortest_strip_mm(reach_mm, near_mm, context);
   const double slack_mm = context.spacing_mm, margin_mm = kMarginSpacings * context.spacing_mm;
-  const std::vector<Box2> boxes =
-      doubtful_places(next, region, context.spacing_mm, slack_mm, margin_mm);
-  const auto has_room = [&](const Box2& box) { return length_within_mm(region, box) >= sides_mm; };
-  if (std::none_of(boxes.begin(), boxes.end(), has_room)) return region;
-  const Polygons cores = offset(region, -near_mm / 2);
-  Polygons strips;
-  for (const Box2& box : doubtful_places(cores, region, near_mm / 2, slack_mm, margin_mm))
+  Polygons wide, narrow, strips;
+  for (const Polygon& part : region)
+    (has_near_sides(part, width_mm, length_mm) ? narrow : wide).push_back(part);
+  if (narrow.empty()) return region;
+  const Polygons cores = offset(narrow, -near_mm / 2);
+  for (const Box2& box : doubtful_places(cores, narrow, near_mm / 2, slack_mm, margin_mm))
     for (Polygon& part :
-         left_open(clipped(region, box), clipped(cores, grown(box, margin_mm)), near_mm / 2))
+         left_open(clipped(narrow, box), clipped(cores, grown(box, margin_mm)), near_mm / 2))
       if (is_strip(part, reach_mm, context)) strips.push_back(std::move(part));
   if (strips.empty()) return region;
-  return subtract(region, strips);
+  for (Polygon& part : subtract(narrow, strips)) wide.push_back(std::move(part));
+  return wide;
 }
 
 std::vector<Ring> rings_of(const Polygons& polygons) {

@@ -3,15 +3,21 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "planning.hpp"
+#include "polygons.hpp"
+#include "routebench/geometry/grid.hpp"
+#include "routebench/geometry/region.hpp"
+#include "routebench/geometry/vec.hpp"
 #include "routebench/harness/contender.hpp"
 #include "routebench/harness/demand.hpp"
 #include "routebench/harness/judge.hpp"
 #include "routebench/planning/walls.hpp"
+#include "src/near_sides.hpp"
 
 namespace routebench {
 namespace {
@@ -109,7 +115,7 @@ TEST(ThinWalls, ShortStripsKeepTheirWalls) {
   const double near_mm = context.spacing_mm / 2;
   const auto left = [&](double length_mm) {
     const Polygons strip{{test::rectangle(0, 0, length_mm, 0.125), {}}};
-    return area_mm2(without_strips(strip, {}, context.spacing_mm / 2, near_mm, context)) /
+    return area_mm2(without_strips(strip, context.spacing_mm / 2, near_mm, context)) /
            (0.125 * length_mm);
   };
   EXPECT_NEAR(left(0.5), 1, 1e-9);
@@ -123,11 +129,61 @@ TEST(ThinWalls, OnlyTheStripIsTakenFromAWall) {
   const PlanContext context = test::context_for(2, 1);
   const Polygons region{
       {{{0, 0}, {5, 0}, {5, 2}, {15, 2}, {15, 2.125}, {5, 2.125}, {5, 5}, {0, 5}}, {}}};
-  const Polygons left = without_strips(region, offset(region, -context.spacing_mm),
-                                       context.spacing_mm / 2, context.spacing_mm / 2, context);
+  const Polygons left =
+      without_strips(region, context.spacing_mm / 2, context.spacing_mm / 2, context);
   ASSERT_EQ(left.size(), 1U);
   EXPECT_NEAR(area_mm2(left), 25, 0.1);
   EXPECT_LE(area_mm2(subtract(left, region)), 1e-6);
+}
+
+/// A polygon along a bent line, of one width.
+Polygon bent_strip(double length_mm, double width_mm, double bend, double angle_deg) {
+  constexpr int kPieces = 24;
+  const double angle = angle_deg * std::numbers::pi / 180;
+  const double cosine = std::cos(angle), sine = std::sin(angle);
+  Ring left, right;
+  for (int i = 0; i <= kPieces; ++i) {
+    const double t = bend * (1.0 * i / kPieces - 0.5), radius = length_mm / bend;
+    for (const double side : {-1.0, 1.0}) {
+      const Point2 p{(radius + side * width_mm / 2) * std::cos(t),
+                     (radius + side * width_mm / 2) * std::sin(t)};
+      (side < 0 ? left : right)
+          .push_back(snap(Point2{cosine * p.x - sine * p.y, sine * p.x + cosine * p.y}));
+    }
+  }
+  right.insert(right.end(), left.rbegin(), left.rend());
+  return {right, {}};
+}
+
+TEST(NearSides, AreInWhateverIsNarrowAndLong) {
+  for (int i = 0; i < 200; ++i) {
+    const double width_mm = 0.05 + 0.01 * (i % 30), length_mm = 1.5 + 0.07 * (i % 41);
+    const Polygon strip = bent_strip(length_mm, width_mm, 0.1 + 0.02 * (i % 37), 7.7 * i);
+    EXPECT_TRUE(has_near_sides(strip, width_mm + 0.01, 0.75 * length_mm)) << i;
+    EXPECT_FALSE(has_near_sides(strip, width_mm - 0.01, 0.75 * length_mm)) << i;
+    EXPECT_FALSE(has_near_sides(strip, width_mm + 0.01, 3 * length_mm)) << i;
+    // The same as an arm of a wider part.
+    const Polygons square{{test::rectangle(-1, -1, 1, 1), {}}};
+    const Point2 end = strip.outer.front();
+    Polygons arm{strip};
+    for (Point2& p : arm[0].outer) p = p - end;
+    const Polygons both = unite(square, arm);
+    bool any = false;
+    for (const Polygon& part : both) any |= has_near_sides(part, width_mm + 0.01, 0.3 * length_mm);
+    EXPECT_TRUE(any || length_mm < 3.5) << i;
+  }
+}
+
+TEST(NearSides, AreAcrossTheInsideOnly) {
+  // A slot is narrow outside, and a ring round a hole inside.
+  const Ring slotted{{0, 0}, {5, 0}, {5, 4}, {2.6, 4}, {2.6, 1}, {2.5, 1}, {2.5, 4}, {0, 4}};
+  EXPECT_FALSE(has_near_sides({slotted, {}}, 0.3, 1));
+  const Polygons ring =
+      subtract({{test::circle({0, 0}, 2, 60), {}}}, {{test::circle({0, 0}, 1.8, 60), {}}});
+  ASSERT_EQ(ring.size(), 1U);
+  EXPECT_TRUE(has_near_sides(ring[0], 0.22, 100));
+  EXPECT_FALSE(has_near_sides(ring[0], 0.18, 100));
+  EXPECT_FALSE(has_near_sides({test::circle({0, 0}, 2, 60), {}}, 0.3, 1));
 }
 
 }  // namespace

@@ -18,6 +18,8 @@ struct Box2 {
   Point2 lower;
   Point2 upper;
 };
+/// Smallest box around two.
+[[nodiscard]] Box2 around(const Box2& a, const Box2& b);
 /// Smallest box around the polygons; lower > upper if there are none.
 [[nodiscard]] Box2 bounding_box(const Polygons& polygons);
 

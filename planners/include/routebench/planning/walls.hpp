@@ -54,12 +54,10 @@ struct WallGaps {
 /// strip and the wall's reach on both sides, is nearer to what is needed than that of the wall. A
 /// wall there and back is too much in a long strip; in a short one a line lacks its ends.
 ///
-/// Takes   what a wall's centre line encloses, what the next one would (if that is known), and how
-///         far the wall reaches beyond its centre line.
-/// Cost    linear where the next wall goes everywhere; else an offset, and where something is
-///         narrow another one and three Boolean operations.
-[[nodiscard]] Polygons without_strips(const Polygons& region, const Polygons& next, double reach_mm,
-                                      double near_mm, const PlanContext& context);
+/// Takes   what a wall's centre line encloses, and how far the wall reaches beyond its centre line.
+/// Cost    linear where nothing is narrow; else two offsets and two Boolean operations there.
+[[nodiscard]] Polygons without_strips(const Polygons& region, double reach_mm, double near_mm,
+                                      const PlanContext& context);
 
 /// All rings of polygons: each outer one followed by its holes.
 [[nodiscard]] std::vector<Ring> rings_of(const Polygons& polygons);
