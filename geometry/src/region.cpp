@@ -276,19 +276,13 @@ bool fits_between_lines(const Ring& ring, double apart_mm) {
   return highest - lowest < apart_mm * std::sqrt(dot(along, along));
 }
 
-Polygons offset(const Polygons& polygons, double distance_mm, Join join) {
-  if (distance_mm == 0 || polygons.empty()) return polygons;
-  // A mitre is at most twice as long as the distance.
-  ToGrid grid(2 * std::abs(distance_mm));
-  const auto add = [&](const Polygon& polygon) {
-    return fits_between_lines(polygon.outer, -2 * distance_mm) || grid.add(polygon, {1, 0});
-  };
-  if (join == Join::kMiter && std::all_of(polygons.begin(), polygons.end(), add))
-    if (const auto faces = overlay::offset_rings(grid.take(), distance_mm * kGridUnitsPerMm,
-                                                 kCleanMm * kGridUnitsPerMm))
-      return overlay::to_polygons(*faces);
+namespace {
+
+/// Clipper takes what the overlay cannot: parts of more than a metre from the origin, and round
+/// joins.
+Polygons offset_by_clipper(const cl::Paths& boundary, double distance_mm, Join join) {
   cl::ClipperOffset offsetter(kMiterLimit, kArcToleranceMm * kGridUnitsPerMm);
-  offsetter.AddPaths(to_clipper(polygons), join == Join::kMiter ? cl::jtMiter : cl::jtRound,
+  offsetter.AddPaths(boundary, join == Join::kMiter ? cl::jtMiter : cl::jtRound,
                      cl::etClosedPolygon);
   cl::Paths paths;
   offsetter.Execute(paths, distance_mm * kGridUnitsPerMm);
@@ -299,6 +293,38 @@ Polygons offset(const Polygons& polygons, double distance_mm, Join join) {
   cl::PolyTree tree;
   clipper.Execute(cl::ctUnion, tree, cl::pftNonZero, cl::pftNonZero);
   return from_clipper(tree);
+}
+
+std::optional<Polygons> offset_on_grid(const overlay::GridRings& rings, double distance_mm) {
+  const auto faces =
+      overlay::offset_rings(rings, distance_mm * kGridUnitsPerMm, kCleanMm * kGridUnitsPerMm);
+  return faces ? std::optional(overlay::to_polygons(*faces)) : std::nullopt;
+}
+
+/// A mitre is at most twice as long as the distance.
+double margin_mm(double distance_mm) { return 2 * std::abs(distance_mm); }
+
+}  // namespace
+
+Polygons offset(const Polygons& polygons, double distance_mm, Join join) {
+  if (distance_mm == 0 || polygons.empty()) return polygons;
+  ToGrid grid(margin_mm(distance_mm));
+  const auto add = [&](const Polygon& polygon) {
+    return fits_between_lines(polygon.outer, -2 * distance_mm) || grid.add(polygon, {1, 0});
+  };
+  if (join == Join::kMiter && std::all_of(polygons.begin(), polygons.end(), add))
+    if (auto moved = offset_on_grid(grid.take(), distance_mm)) return *std::move(moved);
+  return offset_by_clipper(to_clipper(polygons), distance_mm, join);
+}
+
+Polygons offset_boundary(const std::vector<Ring>& rings, double distance_mm) {
+  ToGrid grid(margin_mm(distance_mm));
+  const auto add = [&](const Ring& ring) { return grid.add(ring, {1, 0}); };
+  if (std::all_of(rings.begin(), rings.end(), add))
+    if (auto moved = offset_on_grid(grid.take(), distance_mm)) return *std::move(moved);
+  cl::Paths paths;
+  for (const Ring& ring : rings) paths.push_back(to_clipper(ring));
+  return offset_by_clipper(paths, distance_mm, Join::kMiter);
 }
 
 Polygons without_thin_parts(const Polygons& polygons, double width_mm) {

@@ -7,12 +7,12 @@
 
 #include "chordal_axis.hpp"
 #include "middle_lines.hpp"
-#include "routebench/geometry/edge_grid.hpp"
 #include "routebench/geometry/grid.hpp"
 #include "routebench/geometry/region.hpp"
 #include "routebench/geometry/simplify.hpp"
 #include "routebench/geometry/vec.hpp"
 #include "routebench/planning/ring_path.hpp"
+#include "routebench/planning/walls.hpp"
 
 namespace routebench {
 namespace {
@@ -53,12 +53,22 @@ void axis_of(const Ring& ring, Point2& centre, Point2& along) {
   along = {std::cos(angle), std::sin(angle)};
 }
 
+bool encloses(const Ring& ring, Point2 p) {
+  bool inside = false;
+  Point2 a = ring.back();
+  for (const Point2 b : ring) {
+    if ((a.y <= p.y) != (b.y <= p.y)) inside ^= (cross(b - a, p - a) > 0) == (b.y > a.y);
+    a = b;
+  }
+  return inside;
+}
+
 /// Makes strokes of the middle lines of one polygon.
 class StrokeCutter {
  public:
-  StrokeCutter(const CentreLineRule& rule, const EdgeGrid& edges, Point2 origin,
+  StrokeCutter(const CentreLineRule& rule, const Room& room, Point2 origin,
                std::vector<Stroke>& strokes)
-      : rule_(rule), edges_(edges), origin_(origin), strokes_(strokes) {}
+      : rule_(rule), room_(room), origin_(origin), strokes_(strokes) {}
 
   void cut(const MiddleLine& line) {
     std::size_t begin = 0;
@@ -77,12 +87,12 @@ class StrokeCutter {
     if (extent_mm > kCompact * rule_.max_width_mm) return false;
     Point2 centre, along;
     axis_of(core.outer, centre, along);
-    if (!edges_.contains(centre)) return false;
+    if (!encloses(core.outer, centre)) return false;
     MiddleLine line;
     line.free_front = line.free_back = true;
     for (int i = -kAxisSteps; i <= kAxisSteps; ++i) {
       const Point2 p = centre + (extent_mm / 2 * i / kAxisSteps) * along;
-      if (!edges_.contains(p)) {
+      if (!encloses(core.outer, p)) {
         if (i > 0) break;
         line.points.clear();
         line.radii_mm.clear();
@@ -108,7 +118,7 @@ class StrokeCutter {
     Point2 deepest = core.outer.front();
     double radius_mm = 0;
     for (const ChordalAxis::Chord& chord : chordal_axis(core, extent_mm / kDotSamples).chords) {
-      const double mm = edges_.distance_to_edge_mm(chord.middle, extent_mm).value_or(0);
+      const double mm = room_.radius_mm(chord.middle, extent_mm).value_or(0);
       if (mm <= radius_mm) continue;
       radius_mm = mm;
       deepest = chord.middle;
@@ -212,7 +222,7 @@ class StrokeCutter {
   }
 
   [[nodiscard]] double width_at(Point2 p) const {
-    const auto radius_mm = edges_.distance_to_edge_mm(p, rule_.max_width_mm / 2);
+    const auto radius_mm = room_.radius_mm(p, rule_.max_width_mm / 2);
     return radius_mm ? 2 * *radius_mm : rule_.max_width_mm;
   }
 
@@ -223,13 +233,13 @@ class StrokeCutter {
     if (piece_mm <= 0) return;
     const Point2 way = (1 / piece_mm) * (end - before);
     const auto fits = [&](double mm) {
-      return !edges_.distance_to_edge_mm(end + mm * way, width_mm / 2 - kTouchMm);
+      return !room_.radius_mm(end + mm * way, width_mm / 2 - kTouchMm);
     };
     // No step is longer than the place is clear of the boundary.
     double clear = 0, blocked = 0;
     while (clear < rule_.max_width_mm) {
-      blocked = clear + edges_.distance_to_edge_mm(end + clear * way, rule_.max_width_mm)
-                            .value_or(rule_.max_width_mm);
+      blocked = clear +
+                room_.radius_mm(end + clear * way, rule_.max_width_mm).value_or(rule_.max_width_mm);
       if (!fits(blocked)) break;
       clear = blocked;
     }
@@ -241,7 +251,7 @@ class StrokeCutter {
   }
 
   const CentreLineRule& rule_;
-  const EdgeGrid& edges_;
+  const Room& room_;
   Point2 origin_;
   std::vector<Stroke>& strokes_;
 };
@@ -255,41 +265,46 @@ double least_area_mm2(const CentreLineRule& rule) {
   return std::min(line, disc(rule.min_dot_mm));
 }
 
-Ring moved(Ring ring, Point2 by) {
-  for (Point2& p : ring) p = snap(p + by);
-  return ring;
+Point2 lower_corner(const std::vector<Ring>& rings) {
+  Point2 lower = rings.front().front();
+  for (const Ring& ring : rings)
+    for (const Point2 p : ring) lower = {std::min(lower.x, p.x), std::min(lower.y, p.y)};
+  return lower;
 }
 
 }  // namespace
 
 std::vector<Stroke> centre_lines(const Polygons& thin, const CentreLineRule& rule,
                                  const PlanContext& context) {
-  std::vector<Stroke> strokes;
-  if (thin.empty()) return strokes;
-  // Relative to a corner, so that the place does not matter.
-  const Point2 origin = bounding_box(thin).lower;
-  Polygons near_origin;
+  std::vector<Ring> rings;
   const double least_mm2 = least_area_mm2(rule);
-  for (const Polygon& polygon : thin) {
-    if (area_mm2(polygon) < least_mm2) continue;
-    Polygon& own = near_origin.emplace_back();
-    own.outer = moved(polygon.outer, Point2{} - origin);
-    for (const Ring& hole : polygon.holes) own.holes.push_back(moved(hole, Point2{} - origin));
-  }
-  if (near_origin.empty()) return strokes;
-  // Beads are as wide as the polygons let them be, not their smoothed copies.
-  const EdgeGrid edges(near_origin);
-  StrokeCutter cutter(rule, edges, origin, strokes);
-  // What is wide enough is about the middle lines of what is left of it if its sides move inwards.
+  for (const Polygon& polygon : thin)
+    if (area_mm2(polygon) >= least_mm2)
+      for (Ring& ring : rings_of({polygon})) rings.push_back(std::move(ring));
+  return centre_lines(std::move(rings), rule, context);
+}
+
+std::vector<Stroke> centre_lines(std::vector<Ring> rings, const CentreLineRule& rule,
+                                 const PlanContext& context) {
+  std::vector<Stroke> strokes;
+  if (rings.empty()) return strokes;
+  // Relative to a corner, so that the place does not matter.
+  const Point2 origin = lower_corner(rings);
+  for (Ring& ring : rings)
+    for (Point2& p : ring) p = snap(p - origin);
+  // The middle lines of what is wide enough are about those of what is left if sides move inwards.
   const double inwards_mm = std::max(rule.min_width_mm / 2 - kCoreMm, 0.0);
-  for (const Polygon& core : offset(near_origin, -inwards_mm)) {
+  for (const Polygon& core : offset_boundary(rings, -(rule.side_mm + inwards_mm))) {
     stop_if_asked(context);
     const Box2 box = bounding_box({core});
     const double extent_mm = distance(box.lower, box.upper) + 2 * inwards_mm;
     if (extent_mm < std::min(rule.min_length_mm, rule.min_dot_mm)) continue;
+    // Beads are as wide as the sides let them be, not those of the core.
+    const Room room(rings, box, rule.side_mm, std::max(rule.max_width_mm, extent_mm));
+    StrokeCutter cutter(rule, room, origin, strokes);
     const std::size_t before = strokes.size();
     if (!cutter.cut_compact(core, inwards_mm))
-      for (const MiddleLine& line : middle_lines(core, inwards_mm, edges, rule.max_width_mm))
+      for (const MiddleLine& line : middle_lines(core, inwards_mm, room, rule.max_width_mm))
         cutter.cut(line);
     if (strokes.size() == before) cutter.dot(core, inwards_mm);
   }

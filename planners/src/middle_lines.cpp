@@ -1,8 +1,10 @@
 #include "middle_lines.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <utility>
 
 #include "chordal_axis.hpp"
@@ -19,14 +21,16 @@ constexpr int kPruningRounds = 4;
 constexpr double kWiderMm = 0.01;  // less is not wider
 // Chords between samples that are no farther apart than the polygon is wide run nearly across.
 constexpr double kLeastStepMm = 0.05;
+// To look at fewer takes less time than to put them into a grid.
+constexpr std::size_t kFewEdges = 64;
 constexpr int kBendSteps = 12;  // in which the way round a bend is sought
 
 /// The axis of one polygon while spurs are taken from it.
 class PrunedAxis {
  public:
-  PrunedAxis(ChordalAxis axis, const EdgeGrid& edges, double farthest_mm)
+  PrunedAxis(ChordalAxis axis, const Room& room, double farthest_mm)
       : axis_(std::move(axis)),
-        edges_(edges),
+        room_(room),
         farthest_mm_(farthest_mm),
         is_left_(axis_.chords.size(), true),
         degree_(axis_.triangles.size()) {
@@ -59,7 +63,7 @@ class PrunedAxis {
   };
 
   [[nodiscard]] double radius_mm(Point2 p) const {
-    return edges_.distance_to_edge_mm(p, farthest_mm_).value_or(farthest_mm_);
+    return room_.radius_mm(p, farthest_mm_).value_or(farthest_mm_);
   }
 
   [[nodiscard]] std::uint32_t across(std::uint32_t chord, std::uint32_t triangle) const {
@@ -171,7 +175,7 @@ class PrunedAxis {
   }
 
   ChordalAxis axis_;
-  const EdgeGrid& edges_;
+  const Room& room_;
   double farthest_mm_;
   std::vector<bool> is_left_;          // chords
   std::vector<std::uint32_t> degree_;  // chords left, of a triangle
@@ -207,12 +211,46 @@ void trim_free_ends(MiddleLine& line) {
 
 }  // namespace
 
-std::vector<MiddleLine> middle_lines(const Polygon& core, double inwards_mm, const EdgeGrid& edges,
+Room::Room(const std::vector<Ring>& rings, const Box2& places, double side_mm, double farthest_mm)
+    : side_mm_(side_mm) {
+  const double reach_mm = side_mm + farthest_mm;
+  const Point2 lower = places.lower - Point2{reach_mm, reach_mm};
+  const Point2 upper = places.upper + Point2{reach_mm, reach_mm};
+  for (const Ring& ring : rings) {
+    Point2 a = ring.back();
+    for (const Point2 b : ring) {
+      if (std::max(a.x, b.x) >= lower.x && std::min(a.x, b.x) <= upper.x &&
+          std::max(a.y, b.y) >= lower.y && std::min(a.y, b.y) <= upper.y)
+        edges_.emplace_back(a, b);
+      a = b;
+    }
+  }
+  if (edges_.size() <= kFewEdges) return;
+  Polygons outlines;  // the grid is asked for distances only
+  for (const Ring& ring : rings) outlines.push_back({ring, {}});
+  grid_.emplace(outlines);
+  edges_.clear();
+}
+
+std::optional<double> Room::radius_mm(Point2 p, double limit_mm) const {
+  const double farthest_mm = limit_mm + side_mm_;
+  if (grid_) {
+    const auto mm = grid_->distance_to_edge_mm(p, farthest_mm);
+    return mm ? std::optional(std::max(*mm - side_mm_, 0.0)) : std::nullopt;
+  }
+  double least = std::numeric_limits<double>::infinity();
+  for (const auto& [a, b] : edges_)
+    least = std::min(least, squared_distance(p, nearest_on_segment(p, a, b)));
+  if (least > farthest_mm * farthest_mm) return std::nullopt;
+  return std::max(std::sqrt(least) - side_mm_, 0.0);
+}
+
+std::vector<MiddleLine> middle_lines(const Polygon& core, double inwards_mm, const Room& room,
                                      double widest_mm) {
   const double mean_width_mm = 2 * (area_mm2(core) / perimeter_mm(Polygons{core}) + inwards_mm);
   const double step_mm =
       std::clamp(mean_width_mm, kLeastStepMm, std::max(kLeastStepMm, widest_mm / 2 - inwards_mm));
-  std::vector<MiddleLine> lines = PrunedAxis(chordal_axis(core, step_mm), edges, widest_mm).lines();
+  std::vector<MiddleLine> lines = PrunedAxis(chordal_axis(core, step_mm), room, widest_mm).lines();
   for (MiddleLine& line : lines) trim_free_ends(line);
   return lines;
 }

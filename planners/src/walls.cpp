@@ -87,47 +87,54 @@ Box2 grown(const Box2& box, double mm) {
   return {box.lower - by, box.upper + by};
 }
 
+template <typename T>
+void append(std::vector<T> more, std::vector<T>& to) {
+  std::move(more.begin(), more.end(), std::back_inserter(to));
+}
+
 /// What of an area is farther than `reach_mm` from what is laid. Most sides of the area are as far
 /// as that, and would cross those of what is laid, grown, at every corner.
 Polygons left_open(const Polygons& area, const Polygons& laid, double reach_mm) {
   return subtract(area, offset(laid, reach_mm + kSideMm));
 }
 
-/// What a wall leaves open before it, of what the ones before it left.
-Polygons gaps_before(const Polygons& polygons, const std::vector<Polygons>& regions,
-                     std::size_t wall, const PlanContext& context) {
-  stop_if_asked(context);
-  const Polygons& before = wall == 0 ? polygons : regions[wall - 1];
-  const Polygons none;
-  const Polygons& region = wall < regions.size() ? regions[wall] : none;
-  // Where nothing is narrow, the wall's place grows back to where it came from.
-  const double step_mm = wall == 0 ? context.line_width_mm / 2 : context.spacing_mm;
-  const double reach_mm = context.spacing_mm / 2, margin_mm = kMarginSpacings * context.spacing_mm;
-  Polygons gaps;
-  for (const Box2& box : doubtful_places(region, before, step_mm, kStubMm, margin_mm)) {
-    const Polygons open = clipped(before, box);
-    const Polygons laid = clipped(region, grown(box, margin_mm));  // all that reaches into it
-    for (Polygon& gap : left_open(wall == 0 ? open : offset(open, -reach_mm), laid,
-                                  wall == 0 ? step_mm : reach_mm))
-      gaps.push_back(std::move(gap));
+/// Adds the rings round what lies between the centre lines of a wall and of the one before it.
+void append_band(const Polygons& before, const Polygons& region, std::vector<Ring>& rings) {
+  append(rings_of(before), rings);
+  for (Ring& ring : rings_of(region)) {
+    std::reverse(ring.begin(), ring.end());
+    rings.push_back(std::move(ring));
   }
-  return gaps;
 }
 
 }  // namespace
 
 WallGaps wall_gaps(const Polygons& polygons, const std::vector<Polygons>& regions, int count,
                    const PlanContext& context) {
+  const double margin_mm = kMarginSpacings * context.spacing_mm;
   WallGaps gaps;
-  for (std::size_t wall = 0; wall <= regions.size() && std::cmp_less(wall, count); ++wall)
-    for (Polygon& gap : gaps_before(polygons, regions, wall, context))
-      (wall == 0 ? gaps.outside : gaps.between).push_back(std::move(gap));
+  for (std::size_t wall = 0; wall <= regions.size() && std::cmp_less(wall, count); ++wall) {
+    stop_if_asked(context);
+    const Polygons& before = wall == 0 ? polygons : regions[wall - 1];
+    const Polygons none;
+    const Polygons& region = wall < regions.size() ? regions[wall] : none;
+    const double step_mm = wall == 0 ? context.line_width_mm / 2 : context.spacing_mm;
+    // Where nothing is narrow, the wall's place grows back to where it came from.
+    for (const Box2& box : doubtful_places(region, before, step_mm, kStubMm, margin_mm)) {
+      const Polygons open = clipped(before, box);
+      // All that reaches into the box is laid there.
+      if (wall == 0)
+        append(left_open(open, clipped(region, grown(box, margin_mm)), step_mm), gaps.outside);
+      else
+        append_band(open, clipped(region, box), gaps.between);
+    }
+  }
   return gaps;
 }
 
 std::vector<Stroke> gap_lines(const Polygons& polygons, const std::vector<Polygons>& regions,
                               int count, double widest_mm, const PlanContext& context) {
-  const WallGaps gaps = wall_gaps(polygons, regions, count, context);
+  WallGaps gaps = wall_gaps(polygons, regions, count, context);
   CentreLineRule rule{.min_width_mm = narrowest_line_mm(context),
                       .max_width_mm = widest_mm,
                       .min_length_mm = context.line_width_mm / 2,
@@ -135,9 +142,10 @@ std::vector<Stroke> gap_lines(const Polygons& polygons, const std::vector<Polygo
   std::vector<Stroke> strokes = centre_lines(gaps.outside, rule, context);
   // Beads of neighbouring lines overlap with their round sides, and so do these with the walls.
   const double overlap_mm = context.line_width_mm - context.spacing_mm;
+  rule.side_mm = context.spacing_mm / 2;
   rule.min_width_mm = std::max(rule.min_width_mm - overlap_mm, rule.min_width_mm / 4);
   rule.max_width_mm -= overlap_mm;
-  for (Stroke& stroke : centre_lines(gaps.between, rule, context)) {
+  for (Stroke& stroke : centre_lines(std::move(gaps.between), rule, context)) {
     stroke.width_mm += overlap_mm;
     strokes.push_back(std::move(stroke));
   }
@@ -206,7 +214,7 @@ Polygons without_strips(const Polygons& region, double reach_mm, double near_mm,
          left_open(clipped(narrow, box), clipped(cores, grown(box, margin_mm)), near_mm / 2))
       if (is_strip(part, reach_mm, context)) strips.push_back(std::move(part));
   if (strips.empty()) return region;
-  for (Polygon& part : subtract(narrow, strips)) wide.push_back(std::move(part));
+  append(subtract(narrow, strips), wide);
   return wide;
 }
 

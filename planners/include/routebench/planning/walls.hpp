@@ -21,17 +21,20 @@ namespace routebench {
 /// What walls leave open.
 struct WallGaps {
   Polygons outside;  ///< parts that are too narrow for the first wall
-  Polygons between;  ///< strips inside the first wall in which no further one fits
+  /// Rings round bands between the centre lines of walls, wherever the inner one does not follow
+  /// the outer one: directed, the band to the left. Where no line's own place, half a spacing along
+  /// both sides, reaches the middle, a band has a gap.
+  std::vector<Ring> between;
 };
 
 /// What `count` walls leave open before and between them. What lies inside the last of them is none
 /// of it.
 ///
 /// Takes   polygons and their wall_regions, fewer than `count` if no more fit.
-/// Returns polygons, with slivers of a few micrometres among them. A line's own place is taken to
-/// be
-///         a spacing wide, but up to the outline all that its bead reaches.
-/// Cost    linear where nothing is narrow; else two offsets a wall and two Boolean operations.
+/// Returns polygons, with slivers of a few micrometres among them. Up to the outline a wall's place
+///         is all that its bead reaches.
+/// Cost    linear where nothing is narrow; else an offset and a Boolean operation for the first
+///         wall.
 [[nodiscard]] WallGaps wall_gaps(const Polygons& polygons, const std::vector<Polygons>& regions,
                                  int count, const PlanContext& context);
 
