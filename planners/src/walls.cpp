@@ -119,15 +119,16 @@ WallGaps wall_gaps(const Polygons& polygons, const std::vector<Polygons>& region
     const Polygons none;
     const Polygons& region = wall < regions.size() ? regions[wall] : none;
     const double step_mm = wall == 0 ? context.line_width_mm / 2 : context.spacing_mm;
+    std::vector<Ring> band;
     // Where nothing is narrow, the wall's place grows back to where it came from.
     for (const Box2& box : doubtful_places(region, before, step_mm, kStubMm, margin_mm)) {
       const Polygons open = clipped(before, box);
-      // All that reaches into the box is laid there.
-      if (wall == 0)
+      if (wall > 0)
+        append_band(open, clipped(region, box), band);
+      else  // all that reaches into the box is laid there
         append(left_open(open, clipped(region, grown(box, margin_mm)), step_mm), gaps.outside);
-      else
-        append_band(open, clipped(region, box), gaps.between);
     }
+    if (!band.empty()) gaps.between.push_back(std::move(band));
   }
   return gaps;
 }
@@ -145,10 +146,11 @@ std::vector<Stroke> gap_lines(const Polygons& polygons, const std::vector<Polygo
   rule.side_mm = context.spacing_mm / 2;
   rule.min_width_mm = std::max(rule.min_width_mm - overlap_mm, rule.min_width_mm / 4);
   rule.max_width_mm -= overlap_mm;
-  for (Stroke& stroke : centre_lines(std::move(gaps.between), rule, context)) {
-    stroke.width_mm += overlap_mm;
-    strokes.push_back(std::move(stroke));
-  }
+  for (std::vector<Ring>& band : gaps.between)
+    for (Stroke& stroke : centre_lines(std::move(band), rule, context)) {
+      stroke.width_mm += overlap_mm;
+      strokes.push_back(std::move(stroke));
+    }
   return strokes;
 }
 

@@ -21,10 +21,10 @@ namespace routebench {
 /// What walls leave open.
 struct WallGaps {
   Polygons outside;  ///< parts that are too narrow for the first wall
-  /// Rings round bands between the centre lines of walls, wherever the inner one does not follow
-  /// the outer one: directed, the band to the left. Where no line's own place, half a spacing along
-  /// both sides, reaches the middle, a band has a gap.
-  std::vector<Ring> between;
+  /// Of each further wall, where it does not follow the one before it: rings round the bands
+  /// between their centre lines, directed, a band to the left. What of a band is farther from its
+  /// sides than the walls' own places reach, half a spacing, is open.
+  std::vector<std::vector<Ring>> between;
 };
 
 /// What `count` walls leave open before and between them. What lies inside the last of them is none
