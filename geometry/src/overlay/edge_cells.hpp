@@ -84,8 +84,8 @@ class EdgeCells {
   GridPoint upper_;
   std::uint32_t shift_ = 0;
   std::uint32_t columns_ = 0;
-  std::vector<std::uint32_t> head_;  // of each cell's list, row by row
-  std::vector<Item> items_;
+  std::pmr::vector<std::uint32_t> head_;  // of each cell's list, row by row
+  std::pmr::vector<Item> items_;
 };
 
 /// Where two edges that cross do so, to the nearest unit; the same whichever way they are given.

@@ -5,6 +5,7 @@
 #include <compare>
 #include <cstdint>
 #include <limits>
+#include <memory_resource>
 #include <span>
 #include <vector>
 
@@ -64,6 +65,18 @@ struct GridBox {
 /// Many rings in one array.
 class GridRings {
  public:
+  explicit GridRings(std::pmr::memory_resource* memory = std::pmr::get_default_resource())
+      : points_(memory), begin_(memory), windings_(memory) {}
+  GridRings(const GridRings& others, std::pmr::memory_resource* memory)
+      : points_(others.points_, memory),
+        begin_(others.begin_, memory),
+        windings_(others.windings_, memory) {}
+
+  /// Where the rings lie. What is made of them lies there, too.
+  [[nodiscard]] std::pmr::memory_resource* memory() const {
+    return points_.get_allocator().resource();
+  }
+
   /// Begins a ring; what lies to its left is run round `winding` times more.
   void begin_ring(Winding winding) {
     begin_.push_back(static_cast<std::uint32_t>(points_.size()));
@@ -106,7 +119,7 @@ class GridRings {
     return {points_.data() + begin(ring), points_.data() + end(ring)};
   }
   [[nodiscard]] Winding winding(std::uint32_t ring) const { return windings_[ring]; }
-  [[nodiscard]] const std::vector<GridPoint>& points() const { return points_; }
+  [[nodiscard]] const std::pmr::vector<GridPoint>& points() const { return points_; }
   void reserve(std::size_t points) { points_.reserve(points); }
   /// For so many points more.
   void make_room(std::size_t points) {
@@ -115,9 +128,9 @@ class GridRings {
   }
 
  private:
-  std::vector<GridPoint> points_;
-  std::vector<std::uint32_t> begin_;
-  std::vector<Winding> windings_;
+  std::pmr::vector<GridPoint> points_;
+  std::pmr::vector<std::uint32_t> begin_;
+  std::pmr::vector<Winding> windings_;
 };
 
 }  // namespace routebench::overlay

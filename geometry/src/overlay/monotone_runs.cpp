@@ -44,7 +44,10 @@ bool turns_back(GridPoint a, GridPoint b, GridPoint c) {
 class Search {
  public:
   explicit Search(const GridRings& rings)
-      : rings_(rings), points_(rings.points()), steps_left_(kStepsPerEdge * points_.size()) {}
+      : rings_(rings),
+        points_(rings.points()),
+        runs_(rings.memory()),
+        steps_left_(kStepsPerEdge * points_.size()) {}
 
   bool find_none() {
     make_runs();
@@ -121,8 +124,8 @@ class Search {
   }
 
   const GridRings& rings_;
-  const std::vector<GridPoint>& points_;
-  std::vector<Run> runs_;
+  const std::pmr::vector<GridPoint>& points_;
+  std::pmr::vector<Run> runs_;
   std::size_t steps_left_;
 };
 

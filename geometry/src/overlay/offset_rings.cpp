@@ -33,8 +33,9 @@ GridPoint moved(Vector p, Vector by) {
 /// round at least once is the result.
 class MovedBoundary {
  public:
-  MovedBoundary(double distance, double clean, std::size_t points)
-      : distance_(distance), clean_(clean), small_loops_(distance > 0) {
+  MovedBoundary(double distance, double clean, std::size_t points,
+                std::pmr::memory_resource* memory)
+      : distance_(distance), clean_(clean), memory_(memory) {
     curve_.reserve(points + points / 2);
   }
 
@@ -164,14 +165,15 @@ class MovedBoundary {
 
   double distance_;
   double clean_;
-  GridRings curve_;
-  std::vector<Vector> corners_;  // of the ring, corner i at the beginning of edge i
-  std::vector<Vector> kept_;
-  SmallLoops small_loops_;
-  std::vector<DrawnPoint> drawn_;
-  std::vector<Vector> normals_;  // of edges
-  std::vector<double> left_;     // of edges
-  std::vector<double> used_;     // at corners
+  std::pmr::memory_resource* memory_;
+  GridRings curve_{memory_};
+  std::pmr::vector<Vector> corners_{memory_};  // of the ring, corner i at the beginning of edge i
+  std::pmr::vector<Vector> kept_{memory_};
+  SmallLoops small_loops_{distance_ > 0, memory_};
+  std::pmr::vector<DrawnPoint> drawn_{memory_};
+  std::pmr::vector<Vector> normals_{memory_};  // of edges
+  std::pmr::vector<double> left_{memory_};     // of edges
+  std::pmr::vector<double> used_{memory_};     // at corners
 };
 
 /// Takes the points away that lie next to their neighbours or to the line between them. However
@@ -179,7 +181,8 @@ class MovedBoundary {
 /// it stands for than `reach`.
 class Cleaner {
  public:
-  explicit Cleaner(double reach) : reach_(reach), reach2_(reach * reach) {}
+  Cleaner(double reach, std::pmr::memory_resource* memory)
+      : reach_(reach), reach2_(reach * reach), memory_(memory) {}
 
   /// True if the ring has lost points. It may be left with none.
   bool clean(GridRing& ring) {
@@ -219,7 +222,7 @@ class Cleaner {
       ring.clear();
       return true;
     }
-    GridRing kept;
+    GridRing kept(memory_);
     kept.reserve(size);
     for (std::size_t i = 0; i < size; ++i, at = next_[at]) {
       kept.push_back(ring[at]);
@@ -230,7 +233,7 @@ class Cleaner {
   }
 
   /// Of the edges that the last ring has been left with: 1 where points between are gone.
-  [[nodiscard]] const std::vector<std::uint8_t>& moved() const { return moved_; }
+  [[nodiscard]] const std::pmr::vector<std::uint8_t>& moved() const { return moved_; }
 
  private:
   /// Takes a point away; the edge that then stands for it strays so far. Returns the point before,
@@ -272,28 +275,30 @@ class Cleaner {
 
   double reach_;
   double reach2_;
-  std::vector<std::size_t> next_, previous_;
-  std::vector<std::uint8_t> settled_;
-  std::vector<double> strayed_;  // edges, by the point that they begin at
-  std::vector<std::uint8_t> moved_;
+  std::pmr::memory_resource* memory_;
+  std::pmr::vector<std::size_t> next_{memory_}, previous_{memory_};
+  std::pmr::vector<std::uint8_t> settled_{memory_};
+  std::pmr::vector<double> strayed_{memory_};  // edges, by the point that they begin at
+  std::pmr::vector<std::uint8_t> moved_{memory_};
 };
 
 }  // namespace
 
 std::optional<std::vector<GridPolygon>> offset_rings(const GridRings& rings, double distance,
                                                      double clean) {
-  Cleaner smoother(clean), cleaner(clean);
-  MovedBoundary boundary(distance, clean, rings.size());
+  std::pmr::memory_resource* const memory = rings.memory();
+  Cleaner smoother(clean, memory), cleaner(clean, memory);
+  MovedBoundary boundary(distance, clean, rings.size(), memory);
   for (std::uint32_t i = 0; i < rings.rings(); ++i) {
     const std::span<const GridPoint> points = rings.ring(i);
-    GridRing ring(points.begin(), points.end());
+    GridRing ring(points.begin(), points.end(), memory);
     smoother.clean(ring);  // points as near as this make mitres that are noise
     if (!ring.empty()) boundary.add(ring);
   }
   std::optional<std::vector<GridPolygon>> grown = overlay(boundary.take(), Inside::kFirstPositive);
   if (!grown) return std::nullopt;
 
-  std::vector<std::uint8_t> moved;
+  std::pmr::vector<std::uint8_t> moved(memory);
   bool any_moved = false;
   const auto clean_ring = [&](GridRing& ring) {
     any_moved |= cleaner.clean(ring);
@@ -307,7 +312,7 @@ std::optional<std::vector<GridPolygon>> offset_rings(const GridRings& rings, dou
   }
   std::erase_if(*grown, [](const GridPolygon& polygon) { return polygon.outer.empty(); });
   if (!any_moved || grown->empty()) return grown;
-  const GridRings cleaned = rings_of(*grown);
+  const GridRings cleaned = rings_of(*grown, memory);
   // Cleaning moves edges, so rings may overlap by as much.
   if (meet_nowhere(cleaned) || !PlanarEdges(cleaned, moved).any_meets()) return grown;
   return overlay(cleaned, Inside::kFirstNonZero);

@@ -66,8 +66,8 @@ double twice_area(const GridRing& ring) {
 class FaceTracer {
  public:
   FaceTracer(const PlanarEdges& planar, const ChainGraph& graph, Inside inside)
-      : planar_(planar), graph_(graph) {
-    const std::vector<Chain>& chains = graph.chains();
+      : planar_(planar), graph_(graph), memory_(planar.memory()) {
+    const std::pmr::vector<Chain>& chains = graph.chains();
     way_.resize(chains.size(), Way::kNone);
     boundary_of_.resize(chains.size(), kNone);
     for (std::size_t c = 0; c < chains.size(); ++c) {
@@ -141,7 +141,7 @@ class FaceTracer {
   void close_ring(std::uint32_t place) {
     const auto at = [&](std::uint32_t i) { return planar_.point(i); };
     Boundary& boundary = boundaries_.back();
-    GridRing ring;
+    GridRing ring(memory_);
     for (std::size_t i = place; i < path_.size(); ++i) {
       const Chain& chain = graph_.chains()[path_[i]];
       if (!chain.is_closed() && i > place) place_[begin_of(path_[i])] = kNone;
@@ -167,7 +167,7 @@ class FaceTracer {
 
   std::vector<GridPolygon> assemble() {
     std::vector<GridPolygon> polygons;
-    std::vector<std::uint32_t> inner;
+    std::pmr::vector<std::uint32_t> inner(memory_);
     for (std::uint32_t b = 0; b < boundaries_.size(); ++b) {
       Boundary& boundary = boundaries_[b];
       if (boundary.outers.empty()) {
@@ -200,18 +200,19 @@ class FaceTracer {
 
   const PlanarEdges& planar_;
   const ChainGraph& graph_;
-  std::vector<Way> way_;                    // chains: which way has the inside to the left
-  std::vector<std::uint32_t> boundary_of_;  // chains
-  std::vector<Boundary> boundaries_;
-  std::vector<std::uint32_t> path_;   // chains of the walk that no ring has yet
-  std::vector<std::uint32_t> place_;  // nodes: where the path leaves them
+  std::pmr::memory_resource* memory_;
+  std::pmr::vector<Way> way_{memory_};  // chains: which way has the inside to the left
+  std::pmr::vector<std::uint32_t> boundary_of_{memory_};  // chains
+  std::pmr::vector<Boundary> boundaries_{memory_};
+  std::pmr::vector<std::uint32_t> path_{memory_};   // chains of the walk that no ring has yet
+  std::pmr::vector<std::uint32_t> place_{memory_};  // nodes: where the path leaves them
 };
 
 /// The faces of rings that do not meet: every ring is on one side of all others, so one point of it
 /// tells how often they run round it.
 class ApartRings {
  public:
-  explicit ApartRings(const GridRings& rings) : rings_(rings) {}
+  explicit ApartRings(const GridRings& rings) : rings_(rings), places_(rings.memory()) {}
 
   /// Each ring is looked at with each, so more would take longer than to cut them.
   static constexpr std::uint32_t kMostRings = 24;
@@ -220,8 +221,8 @@ class ApartRings {
   std::optional<std::vector<GridPolygon>> faces(Inside inside) {
     for (std::uint32_t i = 0; i < rings_.rings(); ++i) places_.push_back(place_of(i));
     std::vector<GridPolygon> polygons;
-    std::vector<Hole> holes;
-    std::vector<std::uint32_t> polygon_of(rings_.rings(), kNone);
+    std::pmr::vector<Hole> holes(rings_.memory());
+    std::pmr::vector<std::uint32_t> polygon_of(rings_.rings(), kNone, rings_.memory());
     for (std::uint32_t i = 0; i < rings_.rings(); ++i) {
       Place& place = places_[i];
       Winding outside;
@@ -300,14 +301,14 @@ class ApartRings {
   /// What is inside lies to the left of the ring then.
   [[nodiscard]] GridRing ring_of(std::uint32_t ring, bool is_outer) const {
     const std::span<const GridPoint> points = rings_.ring(ring);
-    GridRing made(points.begin(), points.end());
+    GridRing made(points.begin(), points.end(), rings_.memory());
     if (places_[ring].turns_left != is_outer) std::reverse(made.begin() + 1, made.end());
     drop_straight_points(made);
     return made;
   }
 
   const GridRings& rings_;
-  std::vector<Place> places_;
+  std::pmr::vector<Place> places_;
   std::size_t steps_ = 0;
 };
 
@@ -326,8 +327,9 @@ std::optional<std::vector<GridPolygon>> overlay(const GridRings& rings, Inside i
   return FaceTracer(planar, graph, inside).run();
 }
 
-GridRings rings_of(const std::vector<GridPolygon>& polygons) {
-  GridRings rings;
+GridRings rings_of(const std::vector<GridPolygon>& polygons,
+                   std::pmr::memory_resource* memory) {
+  GridRings rings(memory);
   const auto add = [&](const GridRing& ring) {
     rings.begin_ring({1, 0});
     rings.make_room(ring.size());

@@ -25,8 +25,18 @@ bool passes_through_pixel(const Edge& edge, GridPoint p) {
 
 }  // namespace
 
-PlanarEdges::PlanarEdges(const GridRings& rings) : rings_(rings), cells_(rings) {
+PlanarEdges::PlanarEdges(const GridRings& rings, Unmet)
+    : rings_(rings),
+      points_(rings.points(), rings.memory()),
+      next_(rings.memory()),
+      meets_(rings.memory()),
+      boxes_(rings.memory()),
+      cells_(rings),
+      cuts_(rings.memory()) {
   link();
+}
+
+PlanarEdges::PlanarEdges(const GridRings& rings) : PlanarEdges(rings, Unmet()) {
   for (std::uint32_t e = 0; e < size(); ++e)
     cells_.add(e, edge(e), [&](std::uint32_t f) {
       if (come_near(e, f) && !are_neighbours(e, f)) look(e, f);
@@ -34,9 +44,8 @@ PlanarEdges::PlanarEdges(const GridRings& rings) : rings_(rings), cells_(rings) 
   cut_until_planar();
 }
 
-PlanarEdges::PlanarEdges(const GridRings& rings, const std::vector<std::uint8_t>& moved)
-    : rings_(rings), cells_(rings) {
-  link();
+PlanarEdges::PlanarEdges(const GridRings& rings, std::span<const std::uint8_t> moved)
+    : PlanarEdges(rings, Unmet()) {
   for (std::uint32_t e = 0; e < size(); ++e) {
     const bool every = moved[e] != 0;
     cells_.add(e, edge(e), [&](std::uint32_t f) {
@@ -47,7 +56,6 @@ PlanarEdges::PlanarEdges(const GridRings& rings, const std::vector<std::uint8_t>
 }
 
 void PlanarEdges::link() {
-  points_ = rings_.points();
   next_.resize(points_.size());
   boxes_.resize(points_.size());
   meets_.assign(points_.size(), 0);
@@ -78,7 +86,7 @@ void PlanarEdges::set_box(std::uint32_t i) {
 void PlanarEdges::cut_until_planar() {
   for (int round = 0; round < kMaxRounds && !cuts_.empty(); ++round) {
     cut_all_at_cuts();
-    const std::vector<std::uint32_t> pieces = apply_cuts();
+    const std::pmr::vector<std::uint32_t> pieces = apply_cuts();
     // A piece that keeps its edge's number is in the cells twice, which does no harm.
     for (const std::uint32_t e : pieces)
       cells_.add(e, edge(e), [&](std::uint32_t f) {
@@ -106,19 +114,20 @@ void PlanarEdges::cut_all_at_cuts() {
   }
 }
 
-std::vector<std::uint32_t> PlanarEdges::apply_cuts() {
+std::pmr::vector<std::uint32_t> PlanarEdges::apply_cuts() {
   any_meets_ = true;
   const auto along = [&](const Cut& cut) {
     const GridPoint from = points_[cut.edge];
     const std::int64_t x = cut.at.x - from.x, y = cut.at.y - from.y;
     return x * x + y * y;
   };
-  std::vector<Cut> cuts = std::exchange(cuts_, {});
+  std::pmr::vector<Cut> cuts(memory());
+  cuts.swap(cuts_);
   std::sort(cuts.begin(), cuts.end(), [&](const Cut& a, const Cut& b) {
     if (a.edge != b.edge) return a.edge < b.edge;
     return std::tuple(along(a), a.at) < std::tuple(along(b), b.at);
   });
-  std::vector<std::uint32_t> pieces;
+  std::pmr::vector<std::uint32_t> pieces(memory());
   for (auto cut = cuts.begin(); cut != cuts.end();) {
     const std::uint32_t edge = cut->edge, end = next_[edge];
     std::uint32_t last = edge;

@@ -2,6 +2,7 @@
 /// Rings cut where they meet, so that edges share nothing but ends.
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "overlay/edge_cells.hpp"
@@ -23,13 +24,14 @@ class PlanarEdges {
 
   /// As above, of rings that met nowhere before some of their edges were moved: only pairs with one
   /// of these are looked at.
-  PlanarEdges(const GridRings& rings, const std::vector<std::uint8_t>& moved);
+  PlanarEdges(const GridRings& rings, std::span<const std::uint8_t> moved);
 
   /// False if cuts led to new cuts again and again, which has not been seen.
   [[nodiscard]] bool are_planar() const { return are_planar_; }
   /// Whether any two rings, or parts of one, meet.
   [[nodiscard]] bool any_meets() const { return any_meets_; }
 
+  [[nodiscard]] std::pmr::memory_resource* memory() const { return rings_.memory(); }
   [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(points_.size()); }
   [[nodiscard]] GridPoint point(std::uint32_t i) const { return points_[i]; }
   [[nodiscard]] std::uint32_t next(std::uint32_t point) const { return next_[point]; }
@@ -49,6 +51,10 @@ class PlanarEdges {
   }
 
  private:
+  /// Edges, of which none is looked at with another one yet.
+  struct Unmet {};
+  PlanarEdges(const GridRings& rings, Unmet unmet);
+
   struct Box {
     std::int32_t left, low, right, high;
   };
@@ -62,7 +68,7 @@ class PlanarEdges {
   void cut_until_planar();
   /// Cuts whatever passes through the pixel of a cut there too.
   void cut_all_at_cuts();
-  std::vector<std::uint32_t> apply_cuts();
+  std::pmr::vector<std::uint32_t> apply_cuts();
   /// Cuts two edges, not neighbours of one ring, where they meet.
   void look(std::uint32_t e, std::uint32_t f);
   bool share_one_end(std::uint32_t e, std::uint32_t f);
@@ -80,12 +86,12 @@ class PlanarEdges {
   }
 
   const GridRings& rings_;
-  std::vector<GridPoint> points_;  // those of the rings, then cuts
-  std::vector<std::uint32_t> next_;
-  std::vector<std::uint8_t> meets_;
-  std::vector<Box> boxes_;  // edges
+  std::pmr::vector<GridPoint> points_;  // those of the rings, then cuts
+  std::pmr::vector<std::uint32_t> next_;
+  std::pmr::vector<std::uint8_t> meets_;
+  std::pmr::vector<Box> boxes_;  // edges
   EdgeCells cells_;
-  std::vector<Cut> cuts_;
+  std::pmr::vector<Cut> cuts_;
   bool any_meets_ = false;
   bool are_planar_ = true;
 };

@@ -20,7 +20,8 @@ bool segments_meet(const Edge& a, const Edge& b) {
 
 }  // namespace
 
-RingIndex::RingIndex(GridRings rings) : rings_(std::move(rings)), cells_(rings_) {
+RingIndex::RingIndex(GridRings rings)
+    : rings_(std::move(rings)), next_(rings_.memory()), cells_(rings_) {
   next_.resize(rings_.size());
   for (std::uint32_t ring = 0; ring < rings_.rings(); ++ring) {
     const std::uint32_t begin = rings_.begin(ring), end = rings_.end(ring);
