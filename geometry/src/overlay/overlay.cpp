@@ -319,16 +319,18 @@ std::optional<std::vector<GridPolygon>> overlay(const GridRings& rings, Inside i
   // What is offset or cut from a solid seldom meets itself; of two areas the outlines mostly do.
   const bool is_one_set = inside == Inside::kFirstPositive || inside == Inside::kFirstNonZero ||
                           inside == Inside::kFirstOdd;
-  if (is_one_set && rings.rings() <= ApartRings::kMostRings && meet_nowhere(rings))
+  const bool may_be_apart = rings.rings() <= ApartRings::kMostRings;
+  if (may_be_apart && is_one_set && rings.size() > PlanarEdges::kFewEdges && meet_nowhere(rings))
     if (auto faces = ApartRings(rings).faces(inside)) return faces;
   const PlanarEdges planar(rings);
   if (!planar.are_planar()) return std::nullopt;
+  if (may_be_apart && !planar.any_meets())
+    if (auto faces = ApartRings(rings).faces(inside)) return faces;
   const ChainGraph graph(planar);
   return FaceTracer(planar, graph, inside).run();
 }
 
-GridRings rings_of(const std::vector<GridPolygon>& polygons,
-                   std::pmr::memory_resource* memory) {
+GridRings rings_of(const std::vector<GridPolygon>& polygons, std::pmr::memory_resource* memory) {
   GridRings rings(memory);
   const auto add = [&](const GridRing& ring) {
     rings.begin_ring({1, 0});

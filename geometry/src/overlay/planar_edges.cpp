@@ -31,15 +31,15 @@ PlanarEdges::PlanarEdges(const GridRings& rings, Unmet)
       next_(rings.memory()),
       meets_(rings.memory()),
       boxes_(rings.memory()),
-      cells_(rings),
       cuts_(rings.memory()) {
+  if (size() > kFewEdges) cells_.emplace(rings);
   link();
 }
 
 PlanarEdges::PlanarEdges(const GridRings& rings) : PlanarEdges(rings, Unmet()) {
   for (std::uint32_t e = 0; e < size(); ++e)
-    cells_.add(e, edge(e), [&](std::uint32_t f) {
-      if (come_near(e, f) && !are_neighbours(e, f)) look(e, f);
+    visit_near(e, e, [&](std::uint32_t f) {
+      if (!are_neighbours(e, f)) look(e, f);
     });
   cut_until_planar();
 }
@@ -48,11 +48,20 @@ PlanarEdges::PlanarEdges(const GridRings& rings, std::span<const std::uint8_t> m
     : PlanarEdges(rings, Unmet()) {
   for (std::uint32_t e = 0; e < size(); ++e) {
     const bool every = moved[e] != 0;
-    cells_.add(e, edge(e), [&](std::uint32_t f) {
-      if ((every || moved[f] != 0) && come_near(e, f) && !are_neighbours(e, f)) look(e, f);
+    visit_near(e, e, [&](std::uint32_t f) {
+      if ((every || moved[f] != 0) && !are_neighbours(e, f)) look(e, f);
     });
   }
   cut_until_planar();
+}
+
+template <typename Near>
+void PlanarEdges::visit_near(std::uint32_t e, std::uint32_t others, Near&& near) {
+  const GridBox box = boxes_[e];
+  if (!cells_) return boxes_.visit_meeting(box, others, near);
+  cells_->add(e, edge(e), [&](std::uint32_t f) {
+    if (boxes_[f].meets(box)) near(f);
+  });
 }
 
 void PlanarEdges::link() {
@@ -80,7 +89,8 @@ void PlanarEdges::link() {
 
 void PlanarEdges::set_box(std::uint32_t i) {
   const auto [a, b] = edge(i);
-  boxes_[i] = {std::min(a.x, b.x), std::min(a.y, b.y), std::max(a.x, b.x), std::max(a.y, b.y)};
+  boxes_.set(i,
+             {{std::min(a.x, b.x), std::min(a.y, b.y)}, {std::max(a.x, b.x), std::max(a.y, b.y)}});
 }
 
 void PlanarEdges::cut_until_planar() {
@@ -89,8 +99,8 @@ void PlanarEdges::cut_until_planar() {
     const std::pmr::vector<std::uint32_t> pieces = apply_cuts();
     // A piece that keeps its edge's number is in the cells twice, which does no harm.
     for (const std::uint32_t e : pieces)
-      cells_.add(e, edge(e), [&](std::uint32_t f) {
-        if (e == f || !come_near(e, f)) return;
+      visit_near(e, size(), [&](std::uint32_t f) {
+        if (e == f) return;
         if (next_[e] == f)
           look_at_fold(e, f);
         else if (next_[f] == e)
@@ -107,10 +117,14 @@ void PlanarEdges::cut_all_at_cuts() {
   for (std::size_t i = 0; i < found; ++i) {
     const GridPoint p = cuts_[i].at;
     if (i > 0 && p == cuts_[i - 1].at) continue;  // of the edge that it crosses
-    cells_.visit_near(p, [&](std::uint32_t e) {
+    const auto cut = [&](std::uint32_t e) {
       const Edge a = edge(e);
       if (within(a, p) && passes_through_pixel(a, p)) touch(e, p);
-    });
+    };
+    if (cells_)
+      cells_->visit_near(p, cut);
+    else
+      boxes_.visit_meeting({p, p}, size(), cut);
   }
 }
 
@@ -138,12 +152,12 @@ std::pmr::vector<std::uint32_t> PlanarEdges::apply_cuts() {
       points_.push_back(cut->at);
       meets_.push_back(1);
       next_.push_back(end);
-      boxes_.emplace_back();
       pieces.push_back(added);
       next_[last] = added;
       last = added;
     }
   }
+  boxes_.resize(size());
   for (const std::uint32_t piece : pieces) set_box(piece);
   return pieces;
 }

@@ -2,9 +2,11 @@
 /// Rings cut where they meet, so that edges share nothing but ends.
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "overlay/edge_boxes.hpp"
 #include "overlay/edge_cells.hpp"
 #include "overlay/grid_rings.hpp"
 
@@ -18,6 +20,9 @@ namespace routebench::overlay {
 /// Source: J. Hobby, Practical segment intersection with finite precision output, 1999.
 class PlanarEdges {
  public:
+  /// So many edges are each looked at with each.
+  static constexpr std::uint32_t kFewEdges = 192;
+
   /// Takes at least one ring.
   /// Cost  linear in edges and in pairs that come near each other.
   explicit PlanarEdges(const GridRings& rings);
@@ -43,11 +48,16 @@ class PlanarEdges {
   [[nodiscard]] std::uint32_t first_point(std::uint32_t ring) const { return rings_.begin(ring); }
   [[nodiscard]] Winding winding(std::uint32_t ring) const { return rings_.winding(ring); }
 
-  /// See EdgeCells.
+  /// See LeftRay.
   template <typename Counts>
   [[nodiscard]] std::uint32_t first_to_the_left(GridPoint p, Counts&& counts) const {
-    return cells_.first_to_the_left(
+    LeftRay ray(
         p, [this](std::uint32_t e) { return edge(e); }, counts);
+    if (cells_)
+      cells_->trace(ray);
+    else
+      boxes_.visit_meeting({{-kMaxUnits, p.y}, p}, size(), [&](std::uint32_t e) { ray.look(e); });
+    return ray.first();
   }
 
  private:
@@ -55,9 +65,6 @@ class PlanarEdges {
   struct Unmet {};
   PlanarEdges(const GridRings& rings, Unmet unmet);
 
-  struct Box {
-    std::int32_t left, low, right, high;
-  };
   struct Cut {
     std::uint32_t edge;
     GridPoint at;
@@ -79,18 +86,17 @@ class PlanarEdges {
   [[nodiscard]] bool are_neighbours(std::uint32_t e, std::uint32_t f) const {
     return next_[e] == f || next_[f] == e;
   }
-  [[nodiscard]] bool come_near(std::uint32_t e, std::uint32_t f) const {
-    const Box &a = boxes_[e], &b = boxes_[f];
-    return (static_cast<int>(a.left <= b.right) & static_cast<int>(b.left <= a.right) &
-            static_cast<int>(a.low <= b.high) & static_cast<int>(b.low <= a.high)) != 0;
-  }
+  /// Calls near(f) for edges whose box meets that of an edge, possibly several times: without cells
+  /// for those of the first `others`, with cells for those added before.
+  template <typename Near>
+  void visit_near(std::uint32_t e, std::uint32_t others, Near&& near);
 
   const GridRings& rings_;
   std::pmr::vector<GridPoint> points_;  // those of the rings, then cuts
   std::pmr::vector<std::uint32_t> next_;
   std::pmr::vector<std::uint8_t> meets_;
-  std::pmr::vector<Box> boxes_;  // edges
-  EdgeCells cells_;
+  EdgeBoxes boxes_;
+  std::optional<EdgeCells> cells_;  // of many edges
   std::pmr::vector<Cut> cuts_;
   bool any_meets_ = false;
   bool are_planar_ = true;

@@ -34,8 +34,10 @@ RingIndex::RingIndex(GridRings rings)
 
 bool RingIndex::holds(GridPoint p) const {
   if (!cells_.cover(p)) return false;
-  const std::uint32_t hit = cells_.first_to_the_left(
+  LeftRay ray(
       p, [this](std::uint32_t e) { return edge(e); }, [](std::uint32_t) { return true; });
+  cells_.trace(ray);
+  const std::uint32_t hit = ray.first();
   if (hit == kNone) return false;
   // The inside lies to the left of every edge.
   return edge(hit).to.y < edge(hit).from.y;

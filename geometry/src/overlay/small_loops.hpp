@@ -46,7 +46,7 @@ class SmallLoops {
   bool turns_left_;
   std::pmr::vector<DrawnPoint> kept_;
   std::pmr::vector<std::size_t> corners_;  ///< of the points kept those that end no side
-  std::size_t first_ = 0;             ///< edge kept from which on loops may go
+  std::size_t first_ = 0;                  ///< edge kept from which on loops may go
 };
 
 }  // namespace routebench::overlay
