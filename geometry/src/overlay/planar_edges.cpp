@@ -70,14 +70,13 @@ void PlanarEdges::link() {
   meets_.assign(points_.size(), 0);
   for (std::uint32_t ring = 0; ring < rings(); ++ring) {
     const std::uint32_t begin = rings_.begin(ring), end = rings_.end(ring);
-    for (std::uint32_t i = begin; i < end; ++i) {
-      next_[i] = i + 1 < end ? i + 1 : begin;
-      set_box(i);
-    }
     // A ring turns back only where its direction does.
     std::uint32_t before = end - 1;
+    next_[before] = begin;
     std::int64_t x = points_[begin].x - points_[before].x, y = points_[begin].y - points_[before].y;
     for (std::uint32_t i = begin; i < end; before = i++) {
+      if (i + 1 < end) next_[i] = i + 1;
+      set_box(i);
       const std::int64_t dx = points_[next_[i]].x - points_[i].x;
       const std::int64_t dy = points_[next_[i]].y - points_[i].y;
       if (x * dx + y * dy < 0) look_at_fold(before, i);
@@ -96,10 +95,12 @@ void PlanarEdges::set_box(std::uint32_t i) {
 void PlanarEdges::cut_until_planar() {
   for (int round = 0; round < kMaxRounds && !cuts_.empty(); ++round) {
     cut_all_at_cuts();
+    const std::uint32_t uncut = size();
     const std::pmr::vector<std::uint32_t> pieces = apply_cuts();
-    // A piece that keeps its edge's number is in the cells twice, which does no harm.
+    // A piece that keeps its edge's number is in the cells twice, which does no harm. Without cells
+    // added pieces look at those before them.
     for (const std::uint32_t e : pieces)
-      visit_near(e, size(), [&](std::uint32_t f) {
+      visit_near(e, std::max(e, uncut), [&](std::uint32_t f) {
         if (e == f) return;
         if (next_[e] == f)
           look_at_fold(e, f);
