@@ -1,6 +1,7 @@
 #pragma once
 /// The boxes around edges, eight at a time.
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstddef>
@@ -16,40 +17,44 @@
 
 namespace routebench::overlay {
 
-/// Boxes by the number of their edge. Of few edges, those that come near one are found sooner by a
-/// look at all than by any order among them.
+/// Boxes by the number of their edge. Of not too many edges, those that come near one are found
+/// sooner by a look at all than by any order among them. Where they are more than 64, so are the
+/// boxes around every eight edges first, as edges that follow each other lie together.
 class EdgeBoxes {
  public:
-  explicit EdgeBoxes(std::pmr::memory_resource* memory) : eights_(memory) {}
+  EdgeBoxes(std::uint32_t edges, std::pmr::memory_resource* memory)
+      : eights_(memory), groups_(memory), has_groups_(edges > 64) {
+    resize(edges);
+  }
 
   /// Boxes that are added meet nothing until they are set.
-  void resize(std::size_t edges) { eights_.resize((edges + 7) / 8); }
+  void resize(std::uint32_t edges) {
+    eights_.resize((edges + 7) / 8);
+    if (has_groups_) groups_.resize((eights_.size() + 7) / 8);
+  }
 
   void set(std::uint32_t edge, const GridBox& box) {
-    Eight& eight = eights_[edge / 8];
-    const std::size_t k = edge % 8;
-    eight.left[k] = box.lower.x;
-    eight.low[k] = box.lower.y;
-    eight.right[k] = box.upper.x;
-    eight.high[k] = box.upper.y;
+    eights_[edge / 8].set(edge % 8, box);
+    if (has_groups_) groups_[edge / 64].widen(edge / 8 % 8, box);
   }
 
   [[nodiscard]] GridBox operator[](std::uint32_t edge) const {
-    const Eight& eight = eights_[edge / 8];
-    const std::size_t k = edge % 8;
-    return {{eight.left[k], eight.low[k]}, {eight.right[k], eight.high[k]}};
+    return eights_[edge / 8].box(edge % 8);
   }
 
   /// Calls visit(edge) for each of the first `edges` whose box meets another one.
   /// Cost  two instructions a box.
   template <typename Visit>
   void visit_meeting(const GridBox& box, std::uint32_t edges, Visit&& visit) const {
-    for (std::uint32_t begin = 0; begin < edges; begin += 8) {
-      std::uint32_t meeting = eights_[begin / 8].meeting(box);
-      if (edges - begin < 8) meeting &= (1U << (edges - begin)) - 1;
-      for (; meeting != 0; meeting &= meeting - 1)
-        visit(begin + static_cast<std::uint32_t>(std::countr_zero(meeting)));
-    }
+    const std::uint32_t eights = (edges + 7) / 8;
+    const auto look_at = [&](std::uint32_t eight) {
+      visit_bits(eights_[eight].meeting(box), 8 * eight, edges, visit);
+    };
+    if (!has_groups_)
+      for (std::uint32_t eight = 0; eight < eights; ++eight) look_at(eight);
+    else
+      for (std::uint32_t first = 0; first < eights; first += 8)
+        visit_bits(groups_[first / 8].meeting(box), first, eights, look_at);
   }
 
  private:
@@ -59,8 +64,33 @@ class EdgeBoxes {
     return {value, value, value, value, value, value, value, value};
   }
 
+  /// Calls visit(number) for the numbers below `end` whose bits, of `begin` and on, are set.
+  template <typename Visit>
+  static void visit_bits(std::uint32_t bits, std::uint32_t begin, std::uint32_t end,
+                         Visit&& visit) {
+    if (end - begin < 8) bits &= (1U << (end - begin)) - 1;
+    for (; bits != 0; bits &= bits - 1)
+      visit(begin + static_cast<std::uint32_t>(std::countr_zero(bits)));
+  }
+
   struct Eight {
     Coordinates left = all(kMaxUnits + 1), low = left, right = all(-kMaxUnits - 1), high = right;
+
+    [[nodiscard]] GridBox box(std::size_t k) const {
+      return {{left[k], low[k]}, {right[k], high[k]}};
+    }
+    void set(std::size_t k, const GridBox& box) {
+      left[k] = box.lower.x;
+      low[k] = box.lower.y;
+      right[k] = box.upper.x;
+      high[k] = box.upper.y;
+    }
+    void widen(std::size_t k, const GridBox& box) {
+      left[k] = std::min(left[k], box.lower.x);
+      low[k] = std::min(low[k], box.lower.y);
+      right[k] = std::max(right[k], box.upper.x);
+      high[k] = std::max(high[k], box.upper.y);
+    }
 
     /// A bit for each that meets a box.
     [[nodiscard]] std::uint32_t meeting(const GridBox& box) const {
@@ -79,16 +109,16 @@ class EdgeBoxes {
       return ~static_cast<std::uint32_t>(_mm_movemask_epi8(bytes)) & 0xFFU;
 #else
       std::uint32_t bits = 0;
-      for (std::size_t k = 0; k < 8; ++k) {
-        const GridBox one{{left[k], low[k]}, {right[k], high[k]}};
-        bits |= static_cast<std::uint32_t>(one.meets(box)) << k;
-      }
+      for (std::size_t k = 0; k < 8; ++k)
+        bits |= static_cast<std::uint32_t>(this->box(k).meets(box)) << k;
       return bits;
 #endif
     }
   };
 
   std::pmr::vector<Eight> eights_;
+  std::pmr::vector<Eight> groups_;  // boxes of eights
+  bool has_groups_;
 };
 
 }  // namespace routebench::overlay

@@ -11,6 +11,9 @@ namespace {
 
 constexpr std::size_t kStepsPerEdge = 12;
 
+/// So many are cut sooner.
+constexpr std::uint32_t kFewEdges = 512;
+
 /// Edges [begin, end) of one ring, all in one quadrant. Edge i runs from point i to the next one.
 struct Run {
   std::uint32_t begin;
@@ -131,6 +134,8 @@ class Search {
 
 }  // namespace
 
-bool meet_nowhere(const GridRings& rings) { return Search(rings).find_none(); }
+bool meet_nowhere(const GridRings& rings) {
+  return rings.size() > kFewEdges && Search(rings).find_none();
+}
 
 }  // namespace routebench::overlay

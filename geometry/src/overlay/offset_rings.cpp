@@ -314,8 +314,7 @@ std::optional<std::vector<GridPolygon>> offset_rings(const GridRings& rings, dou
   if (!any_moved || grown->empty()) return grown;
   const GridRings cleaned = rings_of(*grown, memory);
   // Cleaning moves edges, so rings may overlap by as much.
-  const bool are_many = cleaned.size() > PlanarEdges::kFewEdges;
-  if ((are_many && meet_nowhere(cleaned)) || !PlanarEdges(cleaned, moved).any_meets()) return grown;
+  if (meet_nowhere(cleaned) || !PlanarEdges(cleaned, moved).any_meets()) return grown;
   return overlay(cleaned, Inside::kFirstNonZero);
 }
 

@@ -320,7 +320,7 @@ std::optional<std::vector<GridPolygon>> overlay(const GridRings& rings, Inside i
   const bool is_one_set = inside == Inside::kFirstPositive || inside == Inside::kFirstNonZero ||
                           inside == Inside::kFirstOdd;
   const bool may_be_apart = rings.rings() <= ApartRings::kMostRings;
-  if (may_be_apart && is_one_set && rings.size() > PlanarEdges::kFewEdges && meet_nowhere(rings))
+  if (may_be_apart && is_one_set && meet_nowhere(rings))
     if (auto faces = ApartRings(rings).faces(inside)) return faces;
   const PlanarEdges planar(rings);
   if (!planar.are_planar()) return std::nullopt;

@@ -10,6 +10,9 @@ namespace {
 
 constexpr int kMaxRounds = 20;
 
+/// So many are found sooner by their boxes than by cells.
+constexpr std::uint32_t kFewEdges = 1024;
+
 /// Whether p, on the line through an edge, lies on the edge.
 bool within(const Edge& edge, GridPoint p) {
   const auto [x0, x1] = std::minmax(edge.from.x, edge.to.x);
@@ -30,7 +33,7 @@ PlanarEdges::PlanarEdges(const GridRings& rings, Unmet)
       points_(rings.points(), rings.memory()),
       next_(rings.memory()),
       meets_(rings.memory()),
-      boxes_(rings.memory()),
+      boxes_(rings.size(), rings.memory()),
       cuts_(rings.memory()) {
   if (size() > kFewEdges) cells_.emplace(rings);
   link();
@@ -66,7 +69,6 @@ void PlanarEdges::visit_near(std::uint32_t e, std::uint32_t others, Near&& near)
 
 void PlanarEdges::link() {
   next_.resize(points_.size());
-  boxes_.resize(points_.size());
   meets_.assign(points_.size(), 0);
   for (std::uint32_t ring = 0; ring < rings(); ++ring) {
     const std::uint32_t begin = rings_.begin(ring), end = rings_.end(ring);

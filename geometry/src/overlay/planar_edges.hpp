@@ -20,9 +20,6 @@ namespace routebench::overlay {
 /// Source: J. Hobby, Practical segment intersection with finite precision output, 1999.
 class PlanarEdges {
  public:
-  /// So many edges are each looked at with each.
-  static constexpr std::uint32_t kFewEdges = 192;
-
   /// Takes at least one ring.
   /// Cost  linear in edges and in pairs that come near each other.
   explicit PlanarEdges(const GridRings& rings);
