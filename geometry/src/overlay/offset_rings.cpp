@@ -41,6 +41,7 @@ class MovedBoundary {
 
   void add(std::span<const GridPoint> ring) {
     corners_.clear();
+    corners_.reserve(ring.size());
     for (const GridPoint p : ring)
       corners_.push_back({static_cast<double>(p.x), static_cast<double>(p.y)});
     do {
@@ -49,6 +50,7 @@ class MovedBoundary {
     const std::size_t n = corners_.size();
     if (n < 3) return;  // nothing is left of the ring
     drawn_.clear();
+    drawn_.reserve(2 * n);
     for (std::size_t i = 0, before = n - 1; i < n; before = i++) join(corners_[i], before, i);
     small_loops_.drop_from(drawn_);
     curve_.begin_ring({1, 0});
@@ -91,6 +93,7 @@ class MovedBoundary {
     const std::size_t n = corners_.size();
     if (n < 4) return false;
     kept_.clear();
+    kept_.reserve(n);
     bool dropped = false;
     const auto are_one = [](Vector a, Vector b) {
       return std::abs(a.x - b.x) + std::abs(a.y - b.y) < 1;

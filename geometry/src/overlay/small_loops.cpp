@@ -53,6 +53,7 @@ void SmallLoops::drop_from(std::pmr::vector<DrawnPoint>& curve) {
   const double largest = std::abs(twice_area(curve)) / 2;
   begin_after_longest_edge(curve);
   kept_.clear();
+  kept_.reserve(curve.size());
   corners_.clear();
   first_ = 0;
   keep(curve[0]);
