@@ -185,68 +185,80 @@ class MovedBoundary {
 class Cleaner {
  public:
   Cleaner(double reach, std::pmr::memory_resource* memory)
-      : reach_(reach), reach2_(reach * reach), memory_(memory) {}
+      : reach_(reach), reach2_(reach * reach), links_(memory), kept_(memory), moved_(memory) {}
 
-  /// True if the ring has lost points. It may be left with none.
-  bool clean(GridRing& ring) {
+  /// True if a ring loses points; what is left of it, maybe nothing, is kept() then.
+  bool clean(std::span<const GridPoint> ring) {
     const std::size_t n = ring.size();
-    next_.resize(n);
-    previous_.resize(n);
-    settled_.assign(n, 0);
-    strayed_.assign(n, 0);
-    for (std::size_t i = 0; i < n; ++i) {
-      next_[i] = i + 1 < n ? i + 1 : 0;
-      previous_[i] = i > 0 ? i - 1 : n - 1;
+    moved_.clear();
+    std::size_t at = first_to_go(ring);
+    if (at == n) {
+      moved_.resize(n, 0);
+      return false;
     }
-    std::size_t size = n, at = 0;
-    while (size > 2 && settled_[at] == 0) {
-      const GridPoint before = ring[previous_[at]], here = ring[at], after = ring[next_[at]];
+    links_.resize(n);
+    for (std::size_t i = 0; i < n; ++i)
+      links_[i] = {i + 1 < n ? i + 1 : 0, i > 0 ? i - 1 : n - 1, 0, i < at};
+    std::size_t size = n;
+    while (size > 2 && !links_[at].settled) {
+      const auto [next, previous, strayed, settled] = links_[at];
+      const GridPoint before = ring[previous], here = ring[at], after = ring[next];
       double strays = reach_;
       if (is_low(before, here, after))
-        strays = std::max(strayed_[previous_[at]], strayed_[at]) + height(before, here, after);
+        strays = std::max(links_[previous].strayed, strayed) + height(before, here, after);
       if (strays < reach_) {
         at = remove(at, strays);
         --size;
       } else if (are_near(before, after)) {
-        remove(next_[at], 0);
+        remove(next, 0);
         at = remove(at, 0);
         size -= 2;
       } else {
-        settled_[at] = 1;
-        at = next_[at];
+        links_[at].settled = true;
+        at = next;
       }
     }
-    moved_.clear();
-    if (size == n) {
-      moved_.resize(n, 0);
-      return false;
+    kept_.clear();
+    if (size < 3) return true;
+    for (std::size_t i = 0; i < size; ++i, at = links_[at].next) {
+      kept_.push_back(ring[at]);
+      moved_.push_back(links_[at].next == (at + 1 < n ? at + 1 : 0) ? 0 : 1);
     }
-    if (size < 3) {
-      ring.clear();
-      return true;
-    }
-    GridRing kept(memory_);
-    kept.reserve(size);
-    for (std::size_t i = 0; i < size; ++i, at = next_[at]) {
-      kept.push_back(ring[at]);
-      moved_.push_back(next_[at] == (at + 1 < n ? at + 1 : 0) ? 0 : 1);
-    }
-    ring = std::move(kept);
     return true;
   }
+
+  [[nodiscard]] const GridRing& kept() const { return kept_; }
 
   /// Of the edges that the last ring has been left with: 1 where points between are gone.
   [[nodiscard]] const std::pmr::vector<std::uint8_t>& moved() const { return moved_; }
 
  private:
+  struct Link {
+    std::size_t next, previous;
+    double strayed;  ///< the edge that begins here
+    bool settled;
+  };
+
+  /// The first point to take away; as many as there are if all may stay, as mostly they do.
+  [[nodiscard]] std::size_t first_to_go(std::span<const GridPoint> ring) const {
+    const std::size_t n = ring.size();
+    for (std::size_t i = 0; i < n && n > 2; ++i) {
+      const GridPoint before = ring[i > 0 ? i - 1 : n - 1], after = ring[i + 1 < n ? i + 1 : 0];
+      if (are_near(before, after)) return i;
+      if (is_low(before, ring[i], after) && height(before, ring[i], after) < reach_) return i;
+    }
+    return n;
+  }
+
   /// Takes a point away; the edge that then stands for it strays so far. Returns the point before,
   /// which has to be looked at again.
   std::size_t remove(std::size_t at, double strays) {
-    next_[previous_[at]] = next_[at];
-    previous_[next_[at]] = previous_[at];
-    settled_[previous_[at]] = 0;
-    strayed_[previous_[at]] = strays;
-    return previous_[at];
+    const std::size_t next = links_[at].next, previous = links_[at].previous;
+    links_[previous].next = next;
+    links_[next].previous = previous;
+    links_[previous].settled = false;
+    links_[previous].strayed = strays;
+    return previous;
   }
 
   [[nodiscard]] bool are_near(GridPoint a, GridPoint b) const {
@@ -278,11 +290,9 @@ class Cleaner {
 
   double reach_;
   double reach2_;
-  std::pmr::memory_resource* memory_;
-  std::pmr::vector<std::size_t> next_{memory_}, previous_{memory_};
-  std::pmr::vector<std::uint8_t> settled_{memory_};
-  std::pmr::vector<double> strayed_{memory_};  // edges, by the point that they begin at
-  std::pmr::vector<std::uint8_t> moved_{memory_};
+  std::pmr::vector<Link> links_;  // of points
+  GridRing kept_;
+  std::pmr::vector<std::uint8_t> moved_;
 };
 
 }  // namespace
@@ -293,9 +303,8 @@ std::optional<std::vector<GridPolygon>> offset_rings(const GridRings& rings, dou
   Cleaner smoother(clean, memory), cleaner(clean, memory);
   MovedBoundary boundary(distance, clean, rings.size(), memory);
   for (std::uint32_t i = 0; i < rings.rings(); ++i) {
-    const std::span<const GridPoint> points = rings.ring(i);
-    GridRing ring(points.begin(), points.end(), memory);
-    smoother.clean(ring);  // points as near as this make mitres that are noise
+    std::span<const GridPoint> ring = rings.ring(i);
+    if (smoother.clean(ring)) ring = smoother.kept();  // so near, points make mitres that are noise
     if (!ring.empty()) boundary.add(ring);
   }
   std::optional<std::vector<GridPolygon>> grown = overlay(boundary.take(), Inside::kFirstPositive);
@@ -304,7 +313,10 @@ std::optional<std::vector<GridPolygon>> offset_rings(const GridRings& rings, dou
   std::pmr::vector<std::uint8_t> moved(memory);
   bool any_moved = false;
   const auto clean_ring = [&](GridRing& ring) {
-    any_moved |= cleaner.clean(ring);
+    if (cleaner.clean(ring)) {
+      ring = cleaner.kept();
+      any_moved = true;
+    }
     moved.insert(moved.end(), cleaner.moved().begin(), cleaner.moved().end());
   };
   for (GridPolygon& polygon : *grown) {
