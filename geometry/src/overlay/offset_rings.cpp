@@ -61,21 +61,26 @@ class MovedBoundary {
   [[nodiscard]] GridRings take() { return std::move(curve_); }
 
  private:
+  struct MovedEdge {
+    Vector normal;
+    double left;  ///< of its length
+    double used;  ///< at the corner where it begins
+  };
+
   /// Normals, and what is left of the moved edges if every corner is one point.
   void measure_edges() {
     const std::size_t n = corners_.size();
-    normals_.resize(n);
-    left_.resize(n);
-    used_.resize(n);
+    edges_.resize(n);
     for (std::size_t i = 0; i < n; ++i) {
       const Vector a = corners_[i], b = corners_[i + 1 < n ? i + 1 : 0];
       const double dx = b.x - a.x, dy = b.y - a.y;
-      left_[i] = std::sqrt(dx * dx + dy * dy);
-      normals_[i] = {dy / left_[i], -dx / left_[i]};
+      const double length = std::sqrt(dx * dx + dy * dy);
+      edges_[i] = {{dy / length, -dx / length}, length, 0};
     }
     for (std::size_t i = 0, before = n - 1; i < n; before = i++)
-      used_[i] = used_at_corner(normals_[before], normals_[i]);
-    for (std::size_t i = 0; i < n; ++i) left_[i] -= used_[i] + used_[i + 1 < n ? i + 1 : 0];
+      edges_[i].used = used_at_corner(edges_[before].normal, edges_[i].normal);
+    for (std::size_t i = 0; i < n; ++i)
+      edges_[i].left -= edges_[i].used + edges_[i + 1 < n ? i + 1 : 0].used;
   }
 
   /// By how much the moved edges about a corner are shorter if they end where they cross; negative
@@ -103,7 +108,8 @@ class MovedBoundary {
     };
     for (std::size_t i = 0; i < n; ++i) {
       const std::size_t next = i + 1 < n ? i + 1 : 0, before = i > 0 ? i - 1 : n - 1;
-      const bool may_go = left_[i] < 0 && used_[i] > 0 && used_[next] > 0 && next != 0;
+      const bool may_go =
+          edges_[i].left < 0 && edges_[i].used > 0 && edges_[next].used > 0 && next != 0;
       if (may_go) {
         if (const std::optional<Vector> meeting = meeting_of(before, next)) {
           keep(*meeting);
@@ -122,7 +128,7 @@ class MovedBoundary {
 
   /// Where the lines of two edges meet, if they turn less than a mitre allows.
   [[nodiscard]] std::optional<Vector> meeting_of(std::size_t e, std::size_t f) const {
-    const Vector u = normals_[e], v = normals_[f];
+    const Vector u = edges_[e].normal, v = edges_[f].normal;
     const double sine = cross(u, v);
     if (sine * distance_ >= 0 || 1 + dot(u, v) < kShortestMitre) return std::nullopt;
     // Along e, whose direction is its normal turned left.
@@ -134,7 +140,7 @@ class MovedBoundary {
 
   /// The curve about the point between two edges.
   void join(Vector p, std::size_t before, std::size_t after) {
-    const Vector u = normals_[before], v = normals_[after];
+    const Vector u = edges_[before].normal, v = edges_[after].normal;
     const double sine = cross(u, v), cosine = dot(u, v);
     const auto go_to = [&](Vector by, bool ends_side = true, bool is_far = false) {
       draw({moved(p, {distance_ * by.x, distance_ * by.y}), ends_side, is_far});
@@ -145,7 +151,7 @@ class MovedBoundary {
       go_to(u);
     } else if (sine * distance_ < 0) {
       // The moved edges cross. Where neither is used up by that, only their crossing matters.
-      if (1 + cosine >= kShortestMitre && left_[before] >= 0 && left_[after] >= 0)
+      if (1 + cosine >= kShortestMitre && edges_[before].left >= 0 && edges_[after].left >= 0)
         return go_to(tip);
       go_to(u);
       draw({moved(p, {}), false});
@@ -174,9 +180,7 @@ class MovedBoundary {
   std::pmr::vector<Vector> kept_{memory_};
   SmallLoops small_loops_{distance_ > 0, memory_};
   std::pmr::vector<DrawnPoint> drawn_{memory_};
-  std::pmr::vector<Vector> normals_{memory_};  // of edges
-  std::pmr::vector<double> left_{memory_};     // of edges
-  std::pmr::vector<double> used_{memory_};     // at corners
+  std::pmr::vector<MovedEdge> edges_{memory_};
 };
 
 /// Takes the points away that lie next to their neighbours or to the line between them. However
