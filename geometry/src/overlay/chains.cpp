@@ -28,18 +28,21 @@ ChainGraph::ChainGraph(const PlanarEdges& planar) : planar_(planar), memory_(pla
 }
 
 void ChainGraph::make_nodes() {
-  std::pmr::vector<std::uint32_t> meeting(memory_);
+  struct Meeting {
+    GridPoint at;
+    std::uint32_t point;
+  };
+  std::pmr::vector<Meeting> meetings(memory_);
   for (std::uint32_t i = 0; i < planar_.size(); ++i)
-    if (planar_.meets(i)) meeting.push_back(i);
-  const auto at = [&](std::uint32_t i) { return planar_.point(i); };
-  std::sort(meeting.begin(), meeting.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return std::tuple(at(a), a) < std::tuple(at(b), b);
-  });
+    if (planar_.meets(i)) meetings.push_back({planar_.point(i), i});
+  std::sort(meetings.begin(), meetings.end(),
+            [](const Meeting& a, const Meeting& b) { return a.at < b.at; });
   node_of_.assign(planar_.size(), kNone);
-  for (std::size_t i = 0; i < meeting.size(); ++i) {
-    if (i == 0 || at(meeting[i]) != at(meeting[i - 1])) ++node_count_;
-    node_of_[meeting[i]] = node_count_ - 1;
+  for (std::size_t i = 0; i < meetings.size(); ++i) {
+    if (i == 0 || meetings[i].at != meetings[i - 1].at) ++node_count_;
+    node_of_[meetings[i].point] = node_count_ - 1;
   }
+  chains_.reserve(meetings.size() + planar_.rings());
 }
 
 void ChainGraph::make_chains() {
@@ -80,6 +83,7 @@ void ChainGraph::merge_copies() {
     std::uint32_t low, high, chain;
   };
   std::pmr::vector<Single> singles(memory_);
+  singles.reserve(chains_.size());
   for (std::uint32_t c = 0; c < chains_.size(); ++c)
     if (const Chain& chain = chains_[c]; chain.first == chain.last) {
       const auto [low, high] = std::minmax(chain.from, chain.to);
@@ -168,7 +172,9 @@ void ChainGraph::spread(std::uint32_t node, std::uint32_t place, Winding before,
     std::uint32_t node, place;
     Winding before;
   };
-  std::pmr::vector<Visit> open({{node, place, before}}, memory_);
+  std::pmr::vector<Visit> open(memory_);
+  open.reserve(chains_.size() + 1);
+  open.push_back({node, place, before});
   while (!open.empty()) {
     const Visit visit = open.back();
     open.pop_back();

@@ -13,6 +13,8 @@ constexpr int kMaxRounds = 20;
 /// So many are found sooner by their boxes than by cells.
 constexpr std::uint32_t kFewEdges = 1024;
 
+constexpr std::size_t kFewCuts = 16;  // most rings have fewer
+
 /// Whether p, on the line through an edge, lies on the edge.
 bool within(const Edge& edge, GridPoint p) {
   const auto [x0, x1] = std::minmax(edge.from.x, edge.to.x);
@@ -36,6 +38,7 @@ PlanarEdges::PlanarEdges(const GridRings& rings, Unmet)
       boxes_(rings.size(), rings.memory()),
       cuts_(rings.memory()) {
   if (size() > kFewEdges) cells_.emplace(rings);
+  cuts_.reserve(kFewCuts);
   link();
 }
 
@@ -144,7 +147,12 @@ std::pmr::vector<std::uint32_t> PlanarEdges::apply_cuts() {
     if (a.edge != b.edge) return a.edge < b.edge;
     return std::tuple(along(a), a.at) < std::tuple(along(b), b.at);
   });
+  const std::size_t most = size() + cuts.size();
+  points_.reserve(most);
+  meets_.reserve(most);
+  next_.reserve(most);
   std::pmr::vector<std::uint32_t> pieces(memory());
+  pieces.reserve(2 * cuts.size());
   for (auto cut = cuts.begin(); cut != cuts.end();) {
     const std::uint32_t edge = cut->edge, end = next_[edge];
     std::uint32_t last = edge;
