@@ -73,7 +73,7 @@ class EdgeBoxes {
       visit(begin + static_cast<std::uint32_t>(std::countr_zero(bits)));
   }
 
-  struct Eight {
+  struct alignas(16) Eight {
     Coordinates left = all(kMaxUnits + 1), low = left, right = all(-kMaxUnits - 1), high = right;
 
     [[nodiscard]] GridBox box(std::size_t k) const {
@@ -97,7 +97,7 @@ class EdgeBoxes {
 #if defined(__SSE2__)
       const auto apart = [&](std::size_t k) {
         const auto four = [k](const Coordinates& eight) {
-          return _mm_loadu_si128(reinterpret_cast<const __m128i*>(eight.data() + k));
+          return _mm_load_si128(reinterpret_cast<const __m128i*>(eight.data() + k));
         };
         const auto beside = _mm_or_si128(_mm_cmpgt_epi32(four(left), _mm_set1_epi32(box.upper.x)),
                                          _mm_cmpgt_epi32(_mm_set1_epi32(box.lower.x), four(right)));

@@ -43,10 +43,15 @@ PlanarEdges::PlanarEdges(const GridRings& rings, Unmet)
 }
 
 PlanarEdges::PlanarEdges(const GridRings& rings) : PlanarEdges(rings, Unmet()) {
-  for (std::uint32_t e = 0; e < size(); ++e)
-    visit_near(e, e, [&](std::uint32_t f) {
-      if (!are_neighbours(e, f)) look(e, f);
-    });
+  for (std::uint32_t ring = 0; ring < this->rings(); ++ring) {
+    const std::uint32_t begin = rings_.begin(ring), end = rings_.end(ring);
+    for (std::uint32_t e = begin; e < end; ++e) {
+      const std::uint32_t others = e > begin ? e - 1 : e;  // the one before is its neighbour
+      visit_near(e, others, [&](std::uint32_t f) {
+        if (!are_neighbours(e, f)) look(e, f);
+      });
+    }
+  }
   cut_until_planar();
 }
 
@@ -54,8 +59,10 @@ PlanarEdges::PlanarEdges(const GridRings& rings, std::span<const std::uint8_t> m
     : PlanarEdges(rings, Unmet()) {
   for (std::uint32_t e = 0; e < size(); ++e) {
     const bool every = moved[e] != 0;
-    visit_near(e, e, [&](std::uint32_t f) {
-      if ((every || moved[f] != 0) && !are_neighbours(e, f)) look(e, f);
+    if (!every && !cells_) continue;  // those that are moved look at it
+    visit_near(e, size(), [&](std::uint32_t f) {
+      const bool counts = every ? f < e || moved[f] == 0 : moved[f] != 0;
+      if (counts && !are_neighbours(e, f)) look(e, f);
     });
   }
   cut_until_planar();
