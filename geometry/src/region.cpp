@@ -10,6 +10,7 @@
 #include "clipper_paths.hpp"
 #include "overlay/offset_rings.hpp"
 #include "overlay/overlay.hpp"
+#include "overlay/scratch.hpp"
 #include "overlay/to_grid.hpp"
 #include "routebench/geometry/simplify.hpp"
 #include "routebench/geometry/vec.hpp"
@@ -71,7 +72,8 @@ void add_outer(const cl::PolyNode& node, Polygons& polygons) {
 
 /// What overlay finds, if it can be used.
 std::optional<Polygons> overlaid(const Polygons& a, const Polygons& b, Inside inside) {
-  ToGrid grid;
+  overlay::Scratch scratch;
+  ToGrid grid(0, &scratch);
   if (!grid.add(a, {1, 0}) || !grid.add(b, {0, 1})) return std::nullopt;
   const auto faces = overlay::overlay(grid.take(), inside);
   if (!faces) return std::nullopt;
@@ -204,7 +206,8 @@ Polygons polygons_from_rings(std::vector<Ring> rings, FillRule rule) {
   std::erase_if(rings, [](const Ring& ring) { return ring.size() < 3; });
   for (Ring& ring : rings) begin_at_smallest(ring);
   std::sort(rings.begin(), rings.end(), ring_less);
-  ToGrid grid;
+  overlay::Scratch scratch;
+  ToGrid grid(0, &scratch);
   if (std::all_of(rings.begin(), rings.end(), [&](const Ring& ring) {
         return grid.add(ring, {1, 0});
       })) {
@@ -308,7 +311,8 @@ double margin_mm(double distance_mm) { return 2 * std::abs(distance_mm); }
 
 Polygons offset(const Polygons& polygons, double distance_mm, Join join) {
   if (distance_mm == 0 || polygons.empty()) return polygons;
-  ToGrid grid(margin_mm(distance_mm));
+  overlay::Scratch scratch;
+  ToGrid grid(margin_mm(distance_mm), &scratch);
   const auto add = [&](const Polygon& polygon) {
     return fits_between_lines(polygon.outer, -2 * distance_mm) || grid.add(polygon, {1, 0});
   };
@@ -318,7 +322,8 @@ Polygons offset(const Polygons& polygons, double distance_mm, Join join) {
 }
 
 Polygons offset_boundary(const std::vector<Ring>& rings, double distance_mm) {
-  ToGrid grid(margin_mm(distance_mm));
+  overlay::Scratch scratch;
+  ToGrid grid(margin_mm(distance_mm), &scratch);
   const auto add = [&](const Ring& ring) { return grid.add(ring, {1, 0}); };
   if (std::all_of(rings.begin(), rings.end(), add))
     if (auto moved = offset_on_grid(grid.take(), distance_mm)) return *std::move(moved);

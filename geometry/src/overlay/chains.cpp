@@ -17,7 +17,7 @@ bool turns_before(GridPoint a, GridPoint b) {
 
 }  // namespace
 
-ChainGraph::ChainGraph(const PlanarEdges& planar) : planar_(planar) {
+ChainGraph::ChainGraph(const PlanarEdges& planar) : planar_(planar), memory_(planar.memory()) {
   if (planar.any_meets()) make_nodes();
   make_chains();
   if (node_count_ > 0) {
@@ -28,18 +28,21 @@ ChainGraph::ChainGraph(const PlanarEdges& planar) : planar_(planar) {
 }
 
 void ChainGraph::make_nodes() {
-  std::vector<std::uint32_t> meeting;
+  struct Meeting {
+    GridPoint at;
+    std::uint32_t point;
+  };
+  std::pmr::vector<Meeting> meetings(memory_);
   for (std::uint32_t i = 0; i < planar_.size(); ++i)
-    if (planar_.meets(i)) meeting.push_back(i);
-  const auto at = [&](std::uint32_t i) { return planar_.point(i); };
-  std::sort(meeting.begin(), meeting.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return std::tuple(at(a), a) < std::tuple(at(b), b);
-  });
+    if (planar_.meets(i)) meetings.push_back({planar_.point(i), i});
+  std::sort(meetings.begin(), meetings.end(),
+            [](const Meeting& a, const Meeting& b) { return a.at < b.at; });
   node_of_.assign(planar_.size(), kNone);
-  for (std::size_t i = 0; i < meeting.size(); ++i) {
-    if (i == 0 || at(meeting[i]) != at(meeting[i - 1])) ++node_count_;
-    node_of_[meeting[i]] = node_count_ - 1;
+  for (std::size_t i = 0; i < meetings.size(); ++i) {
+    if (i == 0 || meetings[i].at != meetings[i - 1].at) ++node_count_;
+    node_of_[meetings[i].point] = node_count_ - 1;
   }
+  chains_.reserve(meetings.size() + planar_.rings());
 }
 
 void ChainGraph::make_chains() {
@@ -79,7 +82,8 @@ void ChainGraph::merge_copies() {
   struct Single {
     std::uint32_t low, high, chain;
   };
-  std::vector<Single> singles;
+  std::pmr::vector<Single> singles(memory_);
+  singles.reserve(chains_.size());
   for (std::uint32_t c = 0; c < chains_.size(); ++c)
     if (const Chain& chain = chains_[c]; chain.first == chain.last) {
       const auto [low, high] = std::minmax(chain.from, chain.to);
@@ -88,7 +92,7 @@ void ChainGraph::merge_copies() {
   std::sort(singles.begin(), singles.end(), [](const Single& a, const Single& b) {
     return std::tie(a.low, a.high, a.chain) < std::tie(b.low, b.high, b.chain);
   });
-  runs_back_.assign(planar_.size(), false);
+  runs_back_.assign(planar_.size(), 0);
   for (std::size_t i = 1, first = 0; i < singles.size(); ++i) {
     if (std::tie(singles[i].low, singles[i].high) !=
         std::tie(singles[first].low, singles[first].high)) {
@@ -100,7 +104,7 @@ void ChainGraph::merge_copies() {
     original.step = back ? original.step - copy.step : original.step + copy.step;
     copy.is_copy = true;
     chain_of_[copy.first] = singles[first].chain;
-    runs_back_[copy.first] = back;
+    runs_back_[copy.first] = back ? 1 : 0;
   }
 }
 
@@ -123,11 +127,11 @@ void ChainGraph::sort_ends() {
   for_each_end([&](std::uint32_t node, ChainEnd) { ++end_begin_[node + 1]; });
   std::partial_sum(end_begin_.begin(), end_begin_.end(), end_begin_.begin());
   ends_.resize(end_begin_.back());
-  std::vector<std::uint32_t> cursor(end_begin_.begin(), end_begin_.end() - 1);
+  std::pmr::vector<std::uint32_t> cursor(end_begin_.begin(), end_begin_.end() - 1, memory_);
   for_each_end([&](std::uint32_t node, ChainEnd end) { ends_[cursor[node]++] = end; });
   start_place_.resize(chains_.size());
   stop_place_.resize(chains_.size());
-  std::vector<std::pair<GridPoint, ChainEnd>> around;
+  std::pmr::vector<std::pair<GridPoint, ChainEnd>> around(memory_);
   for (std::uint32_t node = 0; node < node_count_; ++node) {
     around.clear();
     for (std::uint32_t i = end_begin_[node]; i < end_begin_[node + 1]; ++i)
@@ -157,18 +161,20 @@ Winding ChainGraph::winding_left_of(std::uint32_t point) const {
   if (edge == kNone) return {};
   const Chain& chain = chains_[chain_of_[edge]];
   const bool rises = planar_.edge(edge).to.y > planar_.edge(edge).from.y;
-  const bool back = !runs_back_.empty() && runs_back_[edge];
+  const bool back = !runs_back_.empty() && runs_back_[edge] != 0;
   return rises != back ? chain.right : chain.left();
 }
 
 void ChainGraph::spread(std::uint32_t node, std::uint32_t place, Winding before,
-                        std::vector<std::uint8_t>& known) {
+                        std::pmr::vector<std::uint8_t>& known) {
   // `before` lies clockwise of the end at `place`.
   struct Visit {
     std::uint32_t node, place;
     Winding before;
   };
-  std::vector<Visit> open{{node, place, before}};
+  std::pmr::vector<Visit> open(memory_);
+  open.reserve(chains_.size() + 1);
+  open.push_back({node, place, before});
   while (!open.empty()) {
     const Visit visit = open.back();
     open.pop_back();
@@ -193,7 +199,7 @@ void ChainGraph::spread(std::uint32_t node, std::uint32_t place, Winding before,
 void ChainGraph::find_windings() {
   const auto at = [&](std::uint32_t i) { return planar_.point(i); };
   // Of every connected part the leftmost point.
-  std::vector<std::uint32_t> part(node_count_);
+  std::pmr::vector<std::uint32_t> part(node_count_, memory_);
   std::iota(part.begin(), part.end(), 0U);
   const auto root = [&](std::uint32_t node) {
     while (part[node] != node) node = part[node] = part[part[node]];
@@ -204,7 +210,7 @@ void ChainGraph::find_windings() {
   struct Seed {
     std::uint32_t point, chain;
   };
-  std::vector<Seed> seeds, of_part(node_count_, {kNone, kNone});
+  std::pmr::vector<Seed> seeds(memory_), of_part(node_count_, {kNone, kNone}, memory_);
   for (std::uint32_t c = 0; c < chains_.size(); ++c) {
     const Chain& chain = chains_[c];
     if (chain.is_copy) continue;
@@ -222,7 +228,7 @@ void ChainGraph::find_windings() {
   std::sort(seeds.begin(), seeds.end(), [&](const Seed& a, const Seed& b) {
     return std::tuple(at(a.point), a.point) < std::tuple(at(b.point), b.point);
   });
-  std::vector<std::uint8_t> known(chains_.size(), 0);
+  std::pmr::vector<std::uint8_t> known(chains_.size(), 0, memory_);
   for (const Seed& seed : seeds) {
     const Winding outside = seeds.size() == 1 || seed.point == seeds.front().point
                                 ? Winding{}

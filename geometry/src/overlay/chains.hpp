@@ -35,7 +35,7 @@ class ChainGraph {
  public:
   explicit ChainGraph(const PlanarEdges& planar);
 
-  [[nodiscard]] const std::vector<Chain>& chains() const { return chains_; }
+  [[nodiscard]] const std::pmr::vector<Chain>& chains() const { return chains_; }
   [[nodiscard]] std::uint32_t nodes() const {
     return static_cast<std::uint32_t>(end_begin_.empty() ? 0 : end_begin_.size() - 1);
   }
@@ -60,18 +60,19 @@ class ChainGraph {
   void find_windings();
   [[nodiscard]] Winding winding_left_of(std::uint32_t point) const;
   void spread(std::uint32_t node, std::uint32_t place, Winding before,
-              std::vector<std::uint8_t>& known);
+              std::pmr::vector<std::uint8_t>& known);
   [[nodiscard]] GridPoint heading(ChainEnd end) const;
 
   const PlanarEdges& planar_;
-  std::vector<std::uint32_t> node_of_;  // points
+  std::pmr::memory_resource* memory_;
+  std::pmr::vector<std::uint32_t> node_of_{memory_};  // points
   std::uint32_t node_count_ = 0;
-  std::vector<Chain> chains_;
-  std::vector<std::uint32_t> chain_of_;  // edges; a copy's are those of its original
-  std::vector<bool> runs_back_;          // edges of copies that run against their original
-  std::vector<std::uint32_t> end_begin_;
-  std::vector<ChainEnd> ends_;
-  std::vector<std::uint32_t> start_place_, stop_place_;  // of chains
+  std::pmr::vector<Chain> chains_{memory_};
+  std::pmr::vector<std::uint32_t> chain_of_{memory_};  // edges; a copy's are its original's
+  std::pmr::vector<std::uint8_t> runs_back_{memory_};  // edges of copies: against the original
+  std::pmr::vector<std::uint32_t> end_begin_{memory_};
+  std::pmr::vector<ChainEnd> ends_{memory_};
+  std::pmr::vector<std::uint32_t> start_place_{memory_}, stop_place_{memory_};  // of chains
 };
 
 }  // namespace routebench::overlay

@@ -47,7 +47,7 @@ GridPoint crossing_of(Edge e, Edge f) {
           e.from.y + static_cast<std::int32_t>(std::lround(share * (e.to.y - e.from.y)))};
 }
 
-EdgeCells::EdgeCells(const GridRings& rings) {
+EdgeCells::EdgeCells(const GridRings& rings) : head_(rings.memory()), items_(rings.memory()) {
   lower_ = upper_ = rings.points().front();
   double extents = 0;
   for (std::uint32_t ring = 0; ring < rings.rings(); ++ring) {

@@ -58,12 +58,9 @@ class EdgeCells {
     return found;
   }
 
-  /// The first edge that a ray from p to the left meets, of those that `counts` names; kNone if
-  /// there is none. The ray runs infinitesimally above p's height, so that it meets no vertex.
-  /// Edges must not cross each other.
-  template <typename EdgeOf, typename Counts>
-  [[nodiscard]] std::uint32_t first_to_the_left(GridPoint p, EdgeOf&& edge_of,
-                                                Counts&& counts) const;
+  /// Lets a ray from a point within the bounds look at the edges that may be the first.
+  template <typename Ray>
+  void trace(Ray& ray) const;
 
  private:
   struct Item {
@@ -84,8 +81,8 @@ class EdgeCells {
   GridPoint upper_;
   std::uint32_t shift_ = 0;
   std::uint32_t columns_ = 0;
-  std::vector<std::uint32_t> head_;  // of each cell's list, row by row
-  std::vector<Item> items_;
+  std::pmr::vector<std::uint32_t> head_;  // of each cell's list, row by row
+  std::pmr::vector<Item> items_;
 };
 
 /// Where two edges that cross do so, to the nearest unit; the same whichever way they are given.
@@ -94,6 +91,41 @@ class EdgeCells {
 /// Whether edge e meets a height more to the right than edge f. Both span the height; they may meet
 /// in an end but do not cross.
 [[nodiscard]] bool is_right_of(const Edge& e, const Edge& f);
+
+/// A ray from a point to the left, and the first edge that it meets of those that it has looked at
+/// and that count. The ray runs infinitesimally above the point's height, so that it meets no
+/// vertex. Edges must not cross each other.
+template <typename EdgeOf, typename Counts>
+class LeftRay {
+ public:
+  LeftRay(GridPoint from, EdgeOf edge_of, Counts counts)
+      : from_(from), edge_of_(edge_of), counts_(counts) {}
+
+  void look(std::uint32_t e) {
+    const Edge edge = edge_of_(e);
+    const bool rises = edge.from.y < edge.to.y;
+    const GridPoint low = rises ? edge.from : edge.to, high = rises ? edge.to : edge.from;
+    if (low.y > from_.y || high.y <= from_.y || e == first_) return;
+    if (turn(low, high, from_) >= 0 || !counts_(e)) return;  // the point must lie to its right
+    if (first_ == kNone || is_right_of(edge, edge_of_(first_))) first_ = e;
+  }
+
+  [[nodiscard]] GridPoint from() const { return from_; }
+  /// kNone if there is none.
+  [[nodiscard]] std::uint32_t first() const { return first_; }
+  /// The x at which the ray meets it.
+  [[nodiscard]] double meets_at() const {
+    const Edge edge = edge_of_(first_);
+    const double share = static_cast<double>(from_.y - edge.from.y) / (edge.to.y - edge.from.y);
+    return edge.from.x + share * (edge.to.x - edge.from.x);
+  }
+
+ private:
+  GridPoint from_;
+  EdgeOf edge_of_;
+  Counts counts_;
+  std::uint32_t first_ = kNone;
+};
 
 template <typename Visit>
 void EdgeCells::visit_cells(const Edge& edge, Visit&& visit) const {
@@ -120,28 +152,18 @@ void EdgeCells::visit_cells(const Edge& edge, Visit&& visit) const {
   }
 }
 
-template <typename EdgeOf, typename Counts>
-std::uint32_t EdgeCells::first_to_the_left(GridPoint p, EdgeOf&& edge_of, Counts&& counts) const {
-  std::uint32_t best = kNone;
+template <typename Ray>
+void EdgeCells::trace(Ray& ray) const {
+  const GridPoint p = ray.from();
   const std::uint32_t first_cell = row(p.y) * columns_;
   for (std::uint32_t c = column(p.x) + 1; c-- > 0;) {
-    for (std::uint32_t i = head_[first_cell + c]; i != kNone; i = items_[i].next) {
-      const std::uint32_t e = items_[i].edge;
-      const Edge edge = edge_of(e);
-      const bool rises = edge.from.y < edge.to.y;
-      const GridPoint low = rises ? edge.from : edge.to, high = rises ? edge.to : edge.from;
-      if (low.y > p.y || high.y <= p.y || e == best) continue;
-      if (turn(low, high, p) >= 0 || !counts(e)) continue;  // p must lie to its right
-      if (best == kNone || is_right_of(edge, edge_of(best))) best = e;
-    }
-    if (best == kNone) continue;
+    for (std::uint32_t i = head_[first_cell + c]; i != kNone; i = items_[i].next)
+      ray.look(items_[i].edge);
     // An edge of a cell further left may still be nearer if the best one lies left of this cell.
-    const Edge edge = edge_of(best);
-    const double share = static_cast<double>(p.y - edge.from.y) / (edge.to.y - edge.from.y);
-    const double x = edge.from.x + share * (edge.to.x - edge.from.x);
-    if (x > lower_.x + static_cast<double>(std::int64_t{c} << shift_) + 2) break;
+    if (ray.first() != kNone &&
+        ray.meets_at() > lower_.x + static_cast<double>(std::int64_t{c} << shift_) + 2)
+      break;
   }
-  return best;
 }
 
 }  // namespace routebench::overlay

@@ -5,6 +5,7 @@
 #include <compare>
 #include <cstdint>
 #include <limits>
+#include <memory_resource>
 #include <span>
 #include <vector>
 
@@ -64,24 +65,30 @@ struct GridBox {
 /// Many rings in one array.
 class GridRings {
  public:
-  /// Begins a ring; what lies to its left is run round `winding` times more.
-  void begin_ring(Winding winding) {
-    begin_.push_back(static_cast<std::uint32_t>(points_.size()));
-    windings_.push_back(winding);
+  explicit GridRings(std::pmr::memory_resource* memory = std::pmr::get_default_resource())
+      : points_(memory), starts_(memory) {}
+  GridRings(const GridRings& others, std::pmr::memory_resource* memory)
+      : points_(others.points_, memory), starts_(others.starts_, memory) {}
+
+  /// Where the rings lie. What is made of them lies there, too.
+  [[nodiscard]] std::pmr::memory_resource* memory() const {
+    return points_.get_allocator().resource();
   }
+
+  /// Begins a ring; what lies to its left is run round `winding` times more.
+  void begin_ring(Winding winding) { starts_.push_back({size(), winding}); }
   /// Adds a point to the last ring, unless it repeats the one before.
   void add(GridPoint p) {
-    if (points_.size() > begin_.back() && points_.back() == p) return;
+    if (points_.size() > starts_.back().point && points_.back() == p) return;
     points_.push_back(p);
   }
   /// Ends the last ring. Rings of fewer than three points enclose nothing and are dropped.
   void end_ring() {
-    while (points_.size() > begin_.back() + 1 && points_.back() == points_[begin_.back()])
-      points_.pop_back();
-    if (points_.size() >= begin_.back() + 3) return;
-    points_.resize(begin_.back());
-    begin_.pop_back();
-    windings_.pop_back();
+    const std::size_t begin = starts_.back().point;
+    while (points_.size() > begin + 1 && points_.back() == points_[begin]) points_.pop_back();
+    if (points_.size() >= begin + 3) return;
+    points_.resize(begin);
+    starts_.pop_back();
   }
 
   /// Adds rings of others, but none whose box is clear of the box of what is `near`.
@@ -90,23 +97,22 @@ class GridRings {
     for (std::uint32_t i = 0; i < others.rings(); ++i) {
       const std::span<const GridPoint> points = others.ring(i);
       if (!box.meets(box_of(points))) continue;
-      begin_.push_back(size());
-      windings_.push_back(winding);
+      begin_ring(winding);
       points_.insert(points_.end(), points.begin(), points.end());
     }
   }
 
-  [[nodiscard]] std::uint32_t rings() const { return static_cast<std::uint32_t>(begin_.size()); }
+  [[nodiscard]] std::uint32_t rings() const { return static_cast<std::uint32_t>(starts_.size()); }
   [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(points_.size()); }
-  [[nodiscard]] std::uint32_t begin(std::uint32_t ring) const { return begin_[ring]; }
+  [[nodiscard]] std::uint32_t begin(std::uint32_t ring) const { return starts_[ring].point; }
   [[nodiscard]] std::uint32_t end(std::uint32_t ring) const {
-    return ring + 1 < rings() ? begin_[ring + 1] : size();
+    return ring + 1 < rings() ? begin(ring + 1) : size();
   }
   [[nodiscard]] std::span<const GridPoint> ring(std::uint32_t ring) const {
     return {points_.data() + begin(ring), points_.data() + end(ring)};
   }
-  [[nodiscard]] Winding winding(std::uint32_t ring) const { return windings_[ring]; }
-  [[nodiscard]] const std::vector<GridPoint>& points() const { return points_; }
+  [[nodiscard]] Winding winding(std::uint32_t ring) const { return starts_[ring].winding; }
+  [[nodiscard]] const std::pmr::vector<GridPoint>& points() const { return points_; }
   void reserve(std::size_t points) { points_.reserve(points); }
   /// For so many points more.
   void make_room(std::size_t points) {
@@ -115,9 +121,14 @@ class GridRings {
   }
 
  private:
-  std::vector<GridPoint> points_;
-  std::vector<std::uint32_t> begin_;
-  std::vector<Winding> windings_;
+  /// Of a ring.
+  struct Start {
+    std::uint32_t point;
+    Winding winding;
+  };
+
+  std::pmr::vector<GridPoint> points_;
+  std::pmr::vector<Start> starts_;
 };
 
 }  // namespace routebench::overlay

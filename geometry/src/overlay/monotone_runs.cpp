@@ -11,6 +11,9 @@ namespace {
 
 constexpr std::size_t kStepsPerEdge = 12;
 
+/// So many are cut sooner.
+constexpr std::uint32_t kFewEdges = 512;
+
 /// Edges [begin, end) of one ring, all in one quadrant. Edge i runs from point i to the next one.
 struct Run {
   std::uint32_t begin;
@@ -44,7 +47,10 @@ bool turns_back(GridPoint a, GridPoint b, GridPoint c) {
 class Search {
  public:
   explicit Search(const GridRings& rings)
-      : rings_(rings), points_(rings.points()), steps_left_(kStepsPerEdge * points_.size()) {}
+      : rings_(rings),
+        points_(rings.points()),
+        runs_(rings.memory()),
+        steps_left_(kStepsPerEdge * points_.size()) {}
 
   bool find_none() {
     make_runs();
@@ -121,13 +127,15 @@ class Search {
   }
 
   const GridRings& rings_;
-  const std::vector<GridPoint>& points_;
-  std::vector<Run> runs_;
+  const std::pmr::vector<GridPoint>& points_;
+  std::pmr::vector<Run> runs_;
   std::size_t steps_left_;
 };
 
 }  // namespace
 
-bool meet_nowhere(const GridRings& rings) { return Search(rings).find_none(); }
+bool meet_nowhere(const GridRings& rings) {
+  return rings.size() > kFewEdges && Search(rings).find_none();
+}
 
 }  // namespace routebench::overlay

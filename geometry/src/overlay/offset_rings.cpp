@@ -33,13 +33,15 @@ GridPoint moved(Vector p, Vector by) {
 /// round at least once is the result.
 class MovedBoundary {
  public:
-  MovedBoundary(double distance, double clean, std::size_t points)
-      : distance_(distance), clean_(clean), small_loops_(distance > 0) {
+  MovedBoundary(double distance, double clean, std::size_t points,
+                std::pmr::memory_resource* memory)
+      : distance_(distance), clean_(clean), memory_(memory) {
     curve_.reserve(points + points / 2);
   }
 
   void add(std::span<const GridPoint> ring) {
     corners_.clear();
+    corners_.reserve(ring.size());
     for (const GridPoint p : ring)
       corners_.push_back({static_cast<double>(p.x), static_cast<double>(p.y)});
     do {
@@ -48,6 +50,7 @@ class MovedBoundary {
     const std::size_t n = corners_.size();
     if (n < 3) return;  // nothing is left of the ring
     drawn_.clear();
+    drawn_.reserve(2 * n);
     for (std::size_t i = 0, before = n - 1; i < n; before = i++) join(corners_[i], before, i);
     small_loops_.drop_from(drawn_);
     curve_.begin_ring({1, 0});
@@ -58,21 +61,26 @@ class MovedBoundary {
   [[nodiscard]] GridRings take() { return std::move(curve_); }
 
  private:
+  struct MovedEdge {
+    Vector normal;
+    double left;  ///< of its length
+    double used;  ///< at the corner where it begins
+  };
+
   /// Normals, and what is left of the moved edges if every corner is one point.
   void measure_edges() {
     const std::size_t n = corners_.size();
-    normals_.resize(n);
-    left_.resize(n);
-    used_.resize(n);
+    edges_.resize(n);
     for (std::size_t i = 0; i < n; ++i) {
       const Vector a = corners_[i], b = corners_[i + 1 < n ? i + 1 : 0];
       const double dx = b.x - a.x, dy = b.y - a.y;
-      left_[i] = std::sqrt(dx * dx + dy * dy);
-      normals_[i] = {dy / left_[i], -dx / left_[i]};
+      const double length = std::sqrt(dx * dx + dy * dy);
+      edges_[i] = {{dy / length, -dx / length}, length, 0};
     }
     for (std::size_t i = 0, before = n - 1; i < n; before = i++)
-      used_[i] = used_at_corner(normals_[before], normals_[i]);
-    for (std::size_t i = 0; i < n; ++i) left_[i] -= used_[i] + used_[i + 1 < n ? i + 1 : 0];
+      edges_[i].used = used_at_corner(edges_[before].normal, edges_[i].normal);
+    for (std::size_t i = 0; i < n; ++i)
+      edges_[i].left -= edges_[i].used + edges_[i + 1 < n ? i + 1 : 0].used;
   }
 
   /// By how much the moved edges about a corner are shorter if they end where they cross; negative
@@ -90,6 +98,7 @@ class MovedBoundary {
     const std::size_t n = corners_.size();
     if (n < 4) return false;
     kept_.clear();
+    kept_.reserve(n);
     bool dropped = false;
     const auto are_one = [](Vector a, Vector b) {
       return std::abs(a.x - b.x) + std::abs(a.y - b.y) < 1;
@@ -99,7 +108,8 @@ class MovedBoundary {
     };
     for (std::size_t i = 0; i < n; ++i) {
       const std::size_t next = i + 1 < n ? i + 1 : 0, before = i > 0 ? i - 1 : n - 1;
-      const bool may_go = left_[i] < 0 && used_[i] > 0 && used_[next] > 0 && next != 0;
+      const bool may_go =
+          edges_[i].left < 0 && edges_[i].used > 0 && edges_[next].used > 0 && next != 0;
       if (may_go) {
         if (const std::optional<Vector> meeting = meeting_of(before, next)) {
           keep(*meeting);
@@ -118,7 +128,7 @@ class MovedBoundary {
 
   /// Where the lines of two edges meet, if they turn less than a mitre allows.
   [[nodiscard]] std::optional<Vector> meeting_of(std::size_t e, std::size_t f) const {
-    const Vector u = normals_[e], v = normals_[f];
+    const Vector u = edges_[e].normal, v = edges_[f].normal;
     const double sine = cross(u, v);
     if (sine * distance_ >= 0 || 1 + dot(u, v) < kShortestMitre) return std::nullopt;
     // Along e, whose direction is its normal turned left.
@@ -130,7 +140,7 @@ class MovedBoundary {
 
   /// The curve about the point between two edges.
   void join(Vector p, std::size_t before, std::size_t after) {
-    const Vector u = normals_[before], v = normals_[after];
+    const Vector u = edges_[before].normal, v = edges_[after].normal;
     const double sine = cross(u, v), cosine = dot(u, v);
     const auto go_to = [&](Vector by, bool ends_side = true, bool is_far = false) {
       draw({moved(p, {distance_ * by.x, distance_ * by.y}), ends_side, is_far});
@@ -141,7 +151,7 @@ class MovedBoundary {
       go_to(u);
     } else if (sine * distance_ < 0) {
       // The moved edges cross. Where neither is used up by that, only their crossing matters.
-      if (1 + cosine >= kShortestMitre && left_[before] >= 0 && left_[after] >= 0)
+      if (1 + cosine >= kShortestMitre && edges_[before].left >= 0 && edges_[after].left >= 0)
         return go_to(tip);
       go_to(u);
       draw({moved(p, {}), false});
@@ -164,14 +174,13 @@ class MovedBoundary {
 
   double distance_;
   double clean_;
-  GridRings curve_;
-  std::vector<Vector> corners_;  // of the ring, corner i at the beginning of edge i
-  std::vector<Vector> kept_;
-  SmallLoops small_loops_;
-  std::vector<DrawnPoint> drawn_;
-  std::vector<Vector> normals_;  // of edges
-  std::vector<double> left_;     // of edges
-  std::vector<double> used_;     // at corners
+  std::pmr::memory_resource* memory_;
+  GridRings curve_{memory_};
+  std::pmr::vector<Vector> corners_{memory_};  // of the ring, corner i at the beginning of edge i
+  std::pmr::vector<Vector> kept_{memory_};
+  SmallLoops small_loops_{distance_ > 0, memory_};
+  std::pmr::vector<DrawnPoint> drawn_{memory_};
+  std::pmr::vector<MovedEdge> edges_{memory_};
 };
 
 /// Takes the points away that lie next to their neighbours or to the line between them. However
@@ -179,68 +188,81 @@ class MovedBoundary {
 /// it stands for than `reach`.
 class Cleaner {
  public:
-  explicit Cleaner(double reach) : reach_(reach), reach2_(reach * reach) {}
+  Cleaner(double reach, std::pmr::memory_resource* memory)
+      : reach_(reach), reach2_(reach * reach), links_(memory), kept_(memory), moved_(memory) {}
 
-  /// True if the ring has lost points. It may be left with none.
-  bool clean(GridRing& ring) {
+  /// True if a ring loses points; what is left of it, maybe nothing, is kept() then.
+  bool clean(std::span<const GridPoint> ring) {
     const std::size_t n = ring.size();
-    next_.resize(n);
-    previous_.resize(n);
-    settled_.assign(n, 0);
-    strayed_.assign(n, 0);
-    for (std::size_t i = 0; i < n; ++i) {
-      next_[i] = i + 1 < n ? i + 1 : 0;
-      previous_[i] = i > 0 ? i - 1 : n - 1;
+    moved_.clear();
+    std::size_t at = first_to_go(ring);
+    if (at == n) {
+      moved_.resize(n, 0);
+      return false;
     }
-    std::size_t size = n, at = 0;
-    while (size > 2 && settled_[at] == 0) {
-      const GridPoint before = ring[previous_[at]], here = ring[at], after = ring[next_[at]];
+    links_.resize(n);
+    for (std::size_t i = 0; i < n; ++i)
+      links_[i] = {i + 1 < n ? i + 1 : 0, i > 0 ? i - 1 : n - 1, 0, i < at};
+    std::size_t size = n;
+    while (size > 2 && !links_[at].settled) {
+      const auto [next, previous, strayed, settled] = links_[at];
+      const GridPoint before = ring[previous], here = ring[at], after = ring[next];
       double strays = reach_;
       if (is_low(before, here, after))
-        strays = std::max(strayed_[previous_[at]], strayed_[at]) + height(before, here, after);
+        strays = std::max(links_[previous].strayed, strayed) + height(before, here, after);
       if (strays < reach_) {
         at = remove(at, strays);
         --size;
       } else if (are_near(before, after)) {
-        remove(next_[at], 0);
+        remove(next, 0);
         at = remove(at, 0);
         size -= 2;
       } else {
-        settled_[at] = 1;
-        at = next_[at];
+        links_[at].settled = true;
+        at = next;
       }
     }
-    moved_.clear();
-    if (size == n) {
-      moved_.resize(n, 0);
-      return false;
+    kept_.clear();
+    if (size < 3) return true;
+    for (std::size_t i = 0; i < size; ++i, at = links_[at].next) {
+      kept_.push_back(ring[at]);
+      moved_.push_back(links_[at].next == (at + 1 < n ? at + 1 : 0) ? 0 : 1);
     }
-    if (size < 3) {
-      ring.clear();
-      return true;
-    }
-    GridRing kept;
-    kept.reserve(size);
-    for (std::size_t i = 0; i < size; ++i, at = next_[at]) {
-      kept.push_back(ring[at]);
-      moved_.push_back(next_[at] == (at + 1 < n ? at + 1 : 0) ? 0 : 1);
-    }
-    ring = std::move(kept);
     return true;
   }
 
+  [[nodiscard]] const GridRing& kept() const { return kept_; }
+
   /// Of the edges that the last ring has been left with: 1 where points between are gone.
-  [[nodiscard]] const std::vector<std::uint8_t>& moved() const { return moved_; }
+  [[nodiscard]] const std::pmr::vector<std::uint8_t>& moved() const { return moved_; }
 
  private:
+  struct Link {
+    std::size_t next, previous;
+    double strayed;  ///< the edge that begins here
+    bool settled;
+  };
+
+  /// The first point to take away; as many as there are if all may stay, as mostly they do.
+  [[nodiscard]] std::size_t first_to_go(std::span<const GridPoint> ring) const {
+    const std::size_t n = ring.size();
+    for (std::size_t i = 0; i < n && n > 2; ++i) {
+      const GridPoint before = ring[i > 0 ? i - 1 : n - 1], after = ring[i + 1 < n ? i + 1 : 0];
+      if (are_near(before, after)) return i;
+      if (is_low(before, ring[i], after) && height(before, ring[i], after) < reach_) return i;
+    }
+    return n;
+  }
+
   /// Takes a point away; the edge that then stands for it strays so far. Returns the point before,
   /// which has to be looked at again.
   std::size_t remove(std::size_t at, double strays) {
-    next_[previous_[at]] = next_[at];
-    previous_[next_[at]] = previous_[at];
-    settled_[previous_[at]] = 0;
-    strayed_[previous_[at]] = strays;
-    return previous_[at];
+    const std::size_t next = links_[at].next, previous = links_[at].previous;
+    links_[previous].next = next;
+    links_[next].previous = previous;
+    links_[previous].settled = false;
+    links_[previous].strayed = strays;
+    return previous;
   }
 
   [[nodiscard]] bool are_near(GridPoint a, GridPoint b) const {
@@ -272,31 +294,33 @@ class Cleaner {
 
   double reach_;
   double reach2_;
-  std::vector<std::size_t> next_, previous_;
-  std::vector<std::uint8_t> settled_;
-  std::vector<double> strayed_;  // edges, by the point that they begin at
-  std::vector<std::uint8_t> moved_;
+  std::pmr::vector<Link> links_;  // of points
+  GridRing kept_;
+  std::pmr::vector<std::uint8_t> moved_;
 };
 
 }  // namespace
 
 std::optional<std::vector<GridPolygon>> offset_rings(const GridRings& rings, double distance,
                                                      double clean) {
-  Cleaner smoother(clean), cleaner(clean);
-  MovedBoundary boundary(distance, clean, rings.size());
+  std::pmr::memory_resource* const memory = rings.memory();
+  Cleaner smoother(clean, memory), cleaner(clean, memory);
+  MovedBoundary boundary(distance, clean, rings.size(), memory);
   for (std::uint32_t i = 0; i < rings.rings(); ++i) {
-    const std::span<const GridPoint> points = rings.ring(i);
-    GridRing ring(points.begin(), points.end());
-    smoother.clean(ring);  // points as near as this make mitres that are noise
+    std::span<const GridPoint> ring = rings.ring(i);
+    if (smoother.clean(ring)) ring = smoother.kept();  // so near, points make mitres that are noise
     if (!ring.empty()) boundary.add(ring);
   }
   std::optional<std::vector<GridPolygon>> grown = overlay(boundary.take(), Inside::kFirstPositive);
   if (!grown) return std::nullopt;
 
-  std::vector<std::uint8_t> moved;
+  std::pmr::vector<std::uint8_t> moved(memory);
   bool any_moved = false;
   const auto clean_ring = [&](GridRing& ring) {
-    any_moved |= cleaner.clean(ring);
+    if (cleaner.clean(ring)) {
+      ring = cleaner.kept();
+      any_moved = true;
+    }
     moved.insert(moved.end(), cleaner.moved().begin(), cleaner.moved().end());
   };
   for (GridPolygon& polygon : *grown) {
@@ -307,7 +331,7 @@ std::optional<std::vector<GridPolygon>> offset_rings(const GridRings& rings, dou
   }
   std::erase_if(*grown, [](const GridPolygon& polygon) { return polygon.outer.empty(); });
   if (!any_moved || grown->empty()) return grown;
-  const GridRings cleaned = rings_of(*grown);
+  const GridRings cleaned = rings_of(*grown, memory);
   // Cleaning moves edges, so rings may overlap by as much.
   if (meet_nowhere(cleaned) || !PlanarEdges(cleaned, moved).any_meets()) return grown;
   return overlay(cleaned, Inside::kFirstNonZero);

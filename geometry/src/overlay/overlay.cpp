@@ -66,8 +66,8 @@ double twice_area(const GridRing& ring) {
 class FaceTracer {
  public:
   FaceTracer(const PlanarEdges& planar, const ChainGraph& graph, Inside inside)
-      : planar_(planar), graph_(graph) {
-    const std::vector<Chain>& chains = graph.chains();
+      : planar_(planar), graph_(graph), memory_(planar.memory()) {
+    const std::pmr::vector<Chain>& chains = graph.chains();
     way_.resize(chains.size(), Way::kNone);
     boundary_of_.resize(chains.size(), kNone);
     for (std::size_t c = 0; c < chains.size(); ++c) {
@@ -80,7 +80,7 @@ class FaceTracer {
   std::vector<GridPolygon> run() {
     for (std::uint32_t c = 0; c < way_.size(); ++c) {
       if (way_[c] == Way::kNone || boundary_of_[c] != kNone) continue;
-      boundaries_.emplace_back();
+      boundaries_.push_back({rings_.size()});
       if (graph_.chains()[c].is_closed()) {
         path_.push_back(c);
         boundary_of_[c] = static_cast<std::uint32_t>(boundaries_.size() - 1);
@@ -95,9 +95,14 @@ class FaceTracer {
  private:
   enum class Way : std::uint8_t { kNone, kOn, kBack };
 
+  struct TracedRing {
+    GridRing points;
+    bool is_outer;
+  };
   /// All rings of one walk round a face.
   struct Boundary {
-    std::vector<GridRing> outers, holes;
+    std::size_t first_ring;
+    bool has_outer = false;
     std::uint32_t leftmost = kNone;  // point
     std::uint32_t polygon = kNone;
   };
@@ -141,7 +146,8 @@ class FaceTracer {
   void close_ring(std::uint32_t place) {
     const auto at = [&](std::uint32_t i) { return planar_.point(i); };
     Boundary& boundary = boundaries_.back();
-    GridRing ring;
+    GridRing& ring = ring_;
+    ring.clear();
     for (std::size_t i = place; i < path_.size(); ++i) {
       const Chain& chain = graph_.chains()[path_[i]];
       if (!chain.is_closed() && i > place) place_[begin_of(path_[i])] = kNone;
@@ -161,22 +167,24 @@ class FaceTracer {
     path_.resize(place);
     drop_straight_points(ring);
     const double area = twice_area(ring);
-    if (area > 0) boundary.outers.push_back(std::move(ring));
-    if (area < 0) boundary.holes.push_back(std::move(ring));
+    if (area == 0) return;
+    rings_.push_back({GridRing(ring, memory_), area > 0});
+    if (area > 0) boundary.has_outer = true;
   }
 
   std::vector<GridPolygon> assemble() {
     std::vector<GridPolygon> polygons;
-    std::vector<std::uint32_t> inner;
+    std::pmr::vector<std::uint32_t> inner(memory_);
     for (std::uint32_t b = 0; b < boundaries_.size(); ++b) {
       Boundary& boundary = boundaries_[b];
-      if (boundary.outers.empty()) {
-        if (!boundary.holes.empty()) inner.push_back(b);
+      if (!boundary.has_outer) {
+        if (!rings_of(b).empty()) inner.push_back(b);
         continue;
       }
       boundary.polygon = static_cast<std::uint32_t>(polygons.size());
-      for (GridRing& outer : boundary.outers) polygons.push_back({std::move(outer), {}});
-      polygons[boundary.polygon].holes = std::move(boundary.holes);
+      for (TracedRing& ring : rings_of(b))
+        if (ring.is_outer) polygons.push_back({std::move(ring.points), {}});
+      add_holes(b, polygons);
     }
     // To the left of a hole lies its polygon, up to the outer ring or another hole.
     const auto at = [&](std::uint32_t i) { return planar_.point(i); };
@@ -191,27 +199,43 @@ class FaceTracer {
           [&](std::uint32_t e) { return way_[graph_.chain_of(e)] != Way::kNone; });
       if (edge == kNone) continue;
       boundary.polygon = boundaries_[boundary_of_[graph_.chain_of(edge)]].polygon;
-      if (boundary.polygon == kNone) continue;
-      for (GridRing& hole : boundary.holes)
-        polygons[boundary.polygon].holes.push_back(std::move(hole));
+      if (boundary.polygon != kNone) add_holes(b, polygons);
     }
     return polygons;
   }
 
+  [[nodiscard]] std::span<TracedRing> rings_of(std::uint32_t boundary) {
+    const bool is_last = boundary + 1 == boundaries_.size();
+    return std::span(rings_).subspan(
+        boundaries_[boundary].first_ring,
+        (is_last ? rings_.size() : boundaries_[boundary + 1].first_ring) -
+            boundaries_[boundary].first_ring);
+  }
+
+  /// To its polygon.
+  void add_holes(std::uint32_t boundary, std::vector<GridPolygon>& polygons) {
+    for (TracedRing& ring : rings_of(boundary))
+      if (!ring.is_outer)
+        polygons[boundaries_[boundary].polygon].holes.push_back(std::move(ring.points));
+  }
+
   const PlanarEdges& planar_;
   const ChainGraph& graph_;
-  std::vector<Way> way_;                    // chains: which way has the inside to the left
-  std::vector<std::uint32_t> boundary_of_;  // chains
-  std::vector<Boundary> boundaries_;
-  std::vector<std::uint32_t> path_;   // chains of the walk that no ring has yet
-  std::vector<std::uint32_t> place_;  // nodes: where the path leaves them
+  std::pmr::memory_resource* memory_;
+  std::pmr::vector<Way> way_{memory_};  // chains: which way has the inside to the left
+  std::pmr::vector<std::uint32_t> boundary_of_{memory_};  // chains
+  std::pmr::vector<Boundary> boundaries_{memory_};
+  std::pmr::vector<TracedRing> rings_{memory_};     // boundary by boundary
+  GridRing ring_{memory_};                          // the one that is made
+  std::pmr::vector<std::uint32_t> path_{memory_};   // chains of the walk that no ring has yet
+  std::pmr::vector<std::uint32_t> place_{memory_};  // nodes: where the path leaves them
 };
 
 /// The faces of rings that do not meet: every ring is on one side of all others, so one point of it
 /// tells how often they run round it.
 class ApartRings {
  public:
-  explicit ApartRings(const GridRings& rings) : rings_(rings) {}
+  explicit ApartRings(const GridRings& rings) : rings_(rings), places_(rings.memory()) {}
 
   /// Each ring is looked at with each, so more would take longer than to cut them.
   static constexpr std::uint32_t kMostRings = 24;
@@ -220,8 +244,8 @@ class ApartRings {
   std::optional<std::vector<GridPolygon>> faces(Inside inside) {
     for (std::uint32_t i = 0; i < rings_.rings(); ++i) places_.push_back(place_of(i));
     std::vector<GridPolygon> polygons;
-    std::vector<Hole> holes;
-    std::vector<std::uint32_t> polygon_of(rings_.rings(), kNone);
+    std::pmr::vector<Hole> holes(rings_.memory());
+    std::pmr::vector<std::uint32_t> polygon_of(rings_.rings(), kNone, rings_.memory());
     for (std::uint32_t i = 0; i < rings_.rings(); ++i) {
       Place& place = places_[i];
       Winding outside;
@@ -300,14 +324,14 @@ class ApartRings {
   /// What is inside lies to the left of the ring then.
   [[nodiscard]] GridRing ring_of(std::uint32_t ring, bool is_outer) const {
     const std::span<const GridPoint> points = rings_.ring(ring);
-    GridRing made(points.begin(), points.end());
+    GridRing made(points.begin(), points.end(), rings_.memory());
     if (places_[ring].turns_left != is_outer) std::reverse(made.begin() + 1, made.end());
     drop_straight_points(made);
     return made;
   }
 
   const GridRings& rings_;
-  std::vector<Place> places_;
+  std::pmr::vector<Place> places_;
   std::size_t steps_ = 0;
 };
 
@@ -318,16 +342,19 @@ std::optional<std::vector<GridPolygon>> overlay(const GridRings& rings, Inside i
   // What is offset or cut from a solid seldom meets itself; of two areas the outlines mostly do.
   const bool is_one_set = inside == Inside::kFirstPositive || inside == Inside::kFirstNonZero ||
                           inside == Inside::kFirstOdd;
-  if (is_one_set && rings.rings() <= ApartRings::kMostRings && meet_nowhere(rings))
+  const bool may_be_apart = rings.rings() <= ApartRings::kMostRings;
+  if (may_be_apart && is_one_set && meet_nowhere(rings))
     if (auto faces = ApartRings(rings).faces(inside)) return faces;
   const PlanarEdges planar(rings);
   if (!planar.are_planar()) return std::nullopt;
+  if (may_be_apart && !planar.any_meets())
+    if (auto faces = ApartRings(rings).faces(inside)) return faces;
   const ChainGraph graph(planar);
   return FaceTracer(planar, graph, inside).run();
 }
 
-GridRings rings_of(const std::vector<GridPolygon>& polygons) {
-  GridRings rings;
+GridRings rings_of(const std::vector<GridPolygon>& polygons, std::pmr::memory_resource* memory) {
+  GridRings rings(memory);
   const auto add = [&](const GridRing& ring) {
     rings.begin_ring({1, 0});
     rings.make_room(ring.size());

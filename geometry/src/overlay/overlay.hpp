@@ -13,7 +13,7 @@ namespace routebench::overlay {
 /// Which places are inside, by how often the rings of the two sets run round them.
 enum class Inside { kFirstPositive, kFirstNonZero, kFirstOdd, kEither, kBoth, kFirstOnly };
 
-using GridRing = std::vector<GridPoint>;
+using GridRing = std::pmr::vector<GridPoint>;
 
 /// Outer ring counter-clockwise, holes clockwise; rings may touch in points.
 struct GridPolygon {
@@ -24,12 +24,14 @@ struct GridPolygon {
 /// The polygons that hold all that is inside. Rings may cross, overlap and repeat. No three
 /// consecutive points lie on a line.
 ///
-/// Returns nothing if the rings cannot be cut; see PlanarEdges.
+/// Returns nothing if the rings cannot be cut; see PlanarEdges. Rings lie where the given ones do.
 /// Cost    about linear where edges are spread evenly.
 [[nodiscard]] std::optional<std::vector<GridPolygon>> overlay(const GridRings& rings,
                                                               Inside inside);
 
 /// The rings of polygons, to their left the inside.
-[[nodiscard]] GridRings rings_of(const std::vector<GridPolygon>& polygons);
+[[nodiscard]] GridRings rings_of(
+    const std::vector<GridPolygon>& polygons,
+    std::pmr::memory_resource* memory = std::pmr::get_default_resource());
 
 }  // namespace routebench::overlay

@@ -10,6 +10,11 @@ namespace {
 
 constexpr int kMaxRounds = 20;
 
+/// So many are found sooner by their boxes than by cells.
+constexpr std::uint32_t kFewEdges = 1024;
+
+constexpr std::size_t kFewCuts = 16;  // most rings have fewer
+
 /// Whether p, on the line through an edge, lies on the edge.
 bool within(const Edge& edge, GridPoint p) {
   const auto [x0, x1] = std::minmax(edge.from.x, edge.to.x);
@@ -25,42 +30,65 @@ bool passes_through_pixel(const Edge& edge, GridPoint p) {
 
 }  // namespace
 
-PlanarEdges::PlanarEdges(const GridRings& rings) : rings_(rings), cells_(rings) {
+PlanarEdges::PlanarEdges(const GridRings& rings, Unmet)
+    : rings_(rings),
+      points_(rings.points(), rings.memory()),
+      next_(rings.memory()),
+      meets_(rings.memory()),
+      boxes_(rings.size(), rings.memory()),
+      cuts_(rings.memory()) {
+  if (size() > kFewEdges) cells_.emplace(rings);
+  cuts_.reserve(kFewCuts);
   link();
-  for (std::uint32_t e = 0; e < size(); ++e)
-    cells_.add(e, edge(e), [&](std::uint32_t f) {
-      if (come_near(e, f) && !are_neighbours(e, f)) look(e, f);
-    });
+}
+
+PlanarEdges::PlanarEdges(const GridRings& rings) : PlanarEdges(rings, Unmet()) {
+  for (std::uint32_t ring = 0; ring < this->rings(); ++ring) {
+    const std::uint32_t begin = rings_.begin(ring), end = rings_.end(ring);
+    for (std::uint32_t e = begin; e < end; ++e) {
+      const std::uint32_t others = e > begin ? e - 1 : e;  // the one before is its neighbour
+      visit_near(e, others, [&](std::uint32_t f) {
+        if (!are_neighbours(e, f)) look(e, f);
+      });
+    }
+  }
   cut_until_planar();
 }
 
-PlanarEdges::PlanarEdges(const GridRings& rings, const std::vector<std::uint8_t>& moved)
-    : rings_(rings), cells_(rings) {
-  link();
+PlanarEdges::PlanarEdges(const GridRings& rings, std::span<const std::uint8_t> moved)
+    : PlanarEdges(rings, Unmet()) {
   for (std::uint32_t e = 0; e < size(); ++e) {
     const bool every = moved[e] != 0;
-    cells_.add(e, edge(e), [&](std::uint32_t f) {
-      if ((every || moved[f] != 0) && come_near(e, f) && !are_neighbours(e, f)) look(e, f);
+    if (!every && !cells_) continue;  // those that are moved look at it
+    visit_near(e, size(), [&](std::uint32_t f) {
+      const bool counts = every ? f < e || moved[f] == 0 : moved[f] != 0;
+      if (counts && !are_neighbours(e, f)) look(e, f);
     });
   }
   cut_until_planar();
 }
 
+template <typename Near>
+void PlanarEdges::visit_near(std::uint32_t e, std::uint32_t others, Near&& near) {
+  const GridBox box = boxes_[e];
+  if (!cells_) return boxes_.visit_meeting(box, others, near);
+  cells_->add(e, edge(e), [&](std::uint32_t f) {
+    if (boxes_[f].meets(box)) near(f);
+  });
+}
+
 void PlanarEdges::link() {
-  points_ = rings_.points();
   next_.resize(points_.size());
-  boxes_.resize(points_.size());
   meets_.assign(points_.size(), 0);
   for (std::uint32_t ring = 0; ring < rings(); ++ring) {
     const std::uint32_t begin = rings_.begin(ring), end = rings_.end(ring);
-    for (std::uint32_t i = begin; i < end; ++i) {
-      next_[i] = i + 1 < end ? i + 1 : begin;
-      set_box(i);
-    }
     // A ring turns back only where its direction does.
     std::uint32_t before = end - 1;
+    next_[before] = begin;
     std::int64_t x = points_[begin].x - points_[before].x, y = points_[begin].y - points_[before].y;
     for (std::uint32_t i = begin; i < end; before = i++) {
+      if (i + 1 < end) next_[i] = i + 1;
+      set_box(i);
       const std::int64_t dx = points_[next_[i]].x - points_[i].x;
       const std::int64_t dy = points_[next_[i]].y - points_[i].y;
       if (x * dx + y * dy < 0) look_at_fold(before, i);
@@ -72,17 +100,20 @@ void PlanarEdges::link() {
 
 void PlanarEdges::set_box(std::uint32_t i) {
   const auto [a, b] = edge(i);
-  boxes_[i] = {std::min(a.x, b.x), std::min(a.y, b.y), std::max(a.x, b.x), std::max(a.y, b.y)};
+  boxes_.set(i,
+             {{std::min(a.x, b.x), std::min(a.y, b.y)}, {std::max(a.x, b.x), std::max(a.y, b.y)}});
 }
 
 void PlanarEdges::cut_until_planar() {
   for (int round = 0; round < kMaxRounds && !cuts_.empty(); ++round) {
     cut_all_at_cuts();
-    const std::vector<std::uint32_t> pieces = apply_cuts();
-    // A piece that keeps its edge's number is in the cells twice, which does no harm.
+    const std::uint32_t uncut = size();
+    const std::pmr::vector<std::uint32_t> pieces = apply_cuts();
+    // A piece that keeps its edge's number is in the cells twice, which does no harm. Without cells
+    // added pieces look at those before them.
     for (const std::uint32_t e : pieces)
-      cells_.add(e, edge(e), [&](std::uint32_t f) {
-        if (e == f || !come_near(e, f)) return;
+      visit_near(e, std::max(e, uncut), [&](std::uint32_t f) {
+        if (e == f) return;
         if (next_[e] == f)
           look_at_fold(e, f);
         else if (next_[f] == e)
@@ -99,26 +130,36 @@ void PlanarEdges::cut_all_at_cuts() {
   for (std::size_t i = 0; i < found; ++i) {
     const GridPoint p = cuts_[i].at;
     if (i > 0 && p == cuts_[i - 1].at) continue;  // of the edge that it crosses
-    cells_.visit_near(p, [&](std::uint32_t e) {
+    const auto cut = [&](std::uint32_t e) {
       const Edge a = edge(e);
       if (within(a, p) && passes_through_pixel(a, p)) touch(e, p);
-    });
+    };
+    if (cells_)
+      cells_->visit_near(p, cut);
+    else
+      boxes_.visit_meeting({p, p}, size(), cut);
   }
 }
 
-std::vector<std::uint32_t> PlanarEdges::apply_cuts() {
+std::pmr::vector<std::uint32_t> PlanarEdges::apply_cuts() {
   any_meets_ = true;
   const auto along = [&](const Cut& cut) {
     const GridPoint from = points_[cut.edge];
     const std::int64_t x = cut.at.x - from.x, y = cut.at.y - from.y;
     return x * x + y * y;
   };
-  std::vector<Cut> cuts = std::exchange(cuts_, {});
+  std::pmr::vector<Cut> cuts(memory());
+  cuts.swap(cuts_);
   std::sort(cuts.begin(), cuts.end(), [&](const Cut& a, const Cut& b) {
     if (a.edge != b.edge) return a.edge < b.edge;
     return std::tuple(along(a), a.at) < std::tuple(along(b), b.at);
   });
-  std::vector<std::uint32_t> pieces;
+  const std::size_t most = size() + cuts.size();
+  points_.reserve(most);
+  meets_.reserve(most);
+  next_.reserve(most);
+  std::pmr::vector<std::uint32_t> pieces(memory());
+  pieces.reserve(2 * cuts.size());
   for (auto cut = cuts.begin(); cut != cuts.end();) {
     const std::uint32_t edge = cut->edge, end = next_[edge];
     std::uint32_t last = edge;
@@ -129,12 +170,12 @@ std::vector<std::uint32_t> PlanarEdges::apply_cuts() {
       points_.push_back(cut->at);
       meets_.push_back(1);
       next_.push_back(end);
-      boxes_.emplace_back();
       pieces.push_back(added);
       next_[last] = added;
       last = added;
     }
   }
+  boxes_.resize(size());
   for (const std::uint32_t piece : pieces) set_box(piece);
   return pieces;
 }

@@ -2,8 +2,11 @@
 /// Rings cut where they meet, so that edges share nothing but ends.
 
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <vector>
 
+#include "overlay/edge_boxes.hpp"
 #include "overlay/edge_cells.hpp"
 #include "overlay/grid_rings.hpp"
 
@@ -23,13 +26,14 @@ class PlanarEdges {
 
   /// As above, of rings that met nowhere before some of their edges were moved: only pairs with one
   /// of these are looked at.
-  PlanarEdges(const GridRings& rings, const std::vector<std::uint8_t>& moved);
+  PlanarEdges(const GridRings& rings, std::span<const std::uint8_t> moved);
 
   /// False if cuts led to new cuts again and again, which has not been seen.
   [[nodiscard]] bool are_planar() const { return are_planar_; }
   /// Whether any two rings, or parts of one, meet.
   [[nodiscard]] bool any_meets() const { return any_meets_; }
 
+  [[nodiscard]] std::pmr::memory_resource* memory() const { return rings_.memory(); }
   [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(points_.size()); }
   [[nodiscard]] GridPoint point(std::uint32_t i) const { return points_[i]; }
   [[nodiscard]] std::uint32_t next(std::uint32_t point) const { return next_[point]; }
@@ -41,17 +45,23 @@ class PlanarEdges {
   [[nodiscard]] std::uint32_t first_point(std::uint32_t ring) const { return rings_.begin(ring); }
   [[nodiscard]] Winding winding(std::uint32_t ring) const { return rings_.winding(ring); }
 
-  /// See EdgeCells.
+  /// See LeftRay.
   template <typename Counts>
   [[nodiscard]] std::uint32_t first_to_the_left(GridPoint p, Counts&& counts) const {
-    return cells_.first_to_the_left(
+    LeftRay ray(
         p, [this](std::uint32_t e) { return edge(e); }, counts);
+    if (cells_)
+      cells_->trace(ray);
+    else
+      boxes_.visit_meeting({{-kMaxUnits, p.y}, p}, size(), [&](std::uint32_t e) { ray.look(e); });
+    return ray.first();
   }
 
  private:
-  struct Box {
-    std::int32_t left, low, right, high;
-  };
+  /// Edges, of which none is looked at with another one yet.
+  struct Unmet {};
+  PlanarEdges(const GridRings& rings, Unmet unmet);
+
   struct Cut {
     std::uint32_t edge;
     GridPoint at;
@@ -62,7 +72,7 @@ class PlanarEdges {
   void cut_until_planar();
   /// Cuts whatever passes through the pixel of a cut there too.
   void cut_all_at_cuts();
-  std::vector<std::uint32_t> apply_cuts();
+  std::pmr::vector<std::uint32_t> apply_cuts();
   /// Cuts two edges, not neighbours of one ring, where they meet.
   void look(std::uint32_t e, std::uint32_t f);
   bool share_one_end(std::uint32_t e, std::uint32_t f);
@@ -73,19 +83,18 @@ class PlanarEdges {
   [[nodiscard]] bool are_neighbours(std::uint32_t e, std::uint32_t f) const {
     return next_[e] == f || next_[f] == e;
   }
-  [[nodiscard]] bool come_near(std::uint32_t e, std::uint32_t f) const {
-    const Box &a = boxes_[e], &b = boxes_[f];
-    return (static_cast<int>(a.left <= b.right) & static_cast<int>(b.left <= a.right) &
-            static_cast<int>(a.low <= b.high) & static_cast<int>(b.low <= a.high)) != 0;
-  }
+  /// Calls near(f) for edges whose box meets that of an edge, possibly several times: without cells
+  /// for those of the first `others`, with cells for those added before.
+  template <typename Near>
+  void visit_near(std::uint32_t e, std::uint32_t others, Near&& near);
 
   const GridRings& rings_;
-  std::vector<GridPoint> points_;  // those of the rings, then cuts
-  std::vector<std::uint32_t> next_;
-  std::vector<std::uint8_t> meets_;
-  std::vector<Box> boxes_;  // edges
-  EdgeCells cells_;
-  std::vector<Cut> cuts_;
+  std::pmr::vector<GridPoint> points_;  // those of the rings, then cuts
+  std::pmr::vector<std::uint32_t> next_;
+  std::pmr::vector<std::uint8_t> meets_;
+  EdgeBoxes boxes_;
+  std::optional<EdgeCells> cells_;  // of many edges
+  std::pmr::vector<Cut> cuts_;
   bool any_meets_ = false;
   bool are_planar_ = true;
 };

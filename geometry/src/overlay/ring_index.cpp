@@ -20,7 +20,8 @@ bool segments_meet(const Edge& a, const Edge& b) {
 
 }  // namespace
 
-RingIndex::RingIndex(GridRings rings) : rings_(std::move(rings)), cells_(rings_) {
+RingIndex::RingIndex(GridRings rings)
+    : rings_(std::move(rings)), next_(rings_.memory()), cells_(rings_) {
   next_.resize(rings_.size());
   for (std::uint32_t ring = 0; ring < rings_.rings(); ++ring) {
     const std::uint32_t begin = rings_.begin(ring), end = rings_.end(ring);
@@ -33,8 +34,10 @@ RingIndex::RingIndex(GridRings rings) : rings_(std::move(rings)), cells_(rings_)
 
 bool RingIndex::holds(GridPoint p) const {
   if (!cells_.cover(p)) return false;
-  const std::uint32_t hit = cells_.first_to_the_left(
+  LeftRay ray(
       p, [this](std::uint32_t e) { return edge(e); }, [](std::uint32_t) { return true; });
+  cells_.trace(ray);
+  const std::uint32_t hit = ray.first();
   if (hit == kNone) return false;
   // The inside lies to the left of every edge.
   return edge(hit).to.y < edge(hit).from.y;

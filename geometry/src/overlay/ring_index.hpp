@@ -31,7 +31,7 @@ class RingIndex {
   }
 
   GridRings rings_;
-  std::vector<std::uint32_t> next_;
+  std::pmr::vector<std::uint32_t> next_;
   EdgeCells cells_;
 };
 

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kMostEdges = 12;
 
-double twice_area(const std::vector<DrawnPoint>& curve) {
+double twice_area(const std::pmr::vector<DrawnPoint>& curve) {
   double sum = 0;
   for (std::size_t i = 1; i + 1 < curve.size(); ++i)
     sum += static_cast<double>(turn(curve[0].at, curve[i].at, curve[i + 1].at));
@@ -18,7 +18,7 @@ double twice_area(const std::vector<DrawnPoint>& curve) {
 }
 
 /// Begins a curve at the end of its longest edge, which is hardly ever part of a small loop.
-void begin_after_longest_edge(std::vector<DrawnPoint>& curve) {
+void begin_after_longest_edge(std::pmr::vector<DrawnPoint>& curve) {
   std::size_t begin = 0;
   double longest = 0;
   for (std::size_t i = 0, before = curve.size() - 1; i < curve.size(); before = i++) {
@@ -45,7 +45,7 @@ bool passes(const Edge& edge, const Edge& line) {
 
 }  // namespace
 
-void SmallLoops::drop_from(std::vector<DrawnPoint>& curve) {
+void SmallLoops::drop_from(std::pmr::vector<DrawnPoint>& curve) {
   const auto ends_no_side = [](const DrawnPoint& point) { return !point.ends_side; };
   if (curve.size() < 5 || std::none_of(curve.begin(), curve.end(), ends_no_side)) return;
   // Of what turns the same way as loops that may go, such as holes that grow, the ring itself must
@@ -53,6 +53,7 @@ void SmallLoops::drop_from(std::vector<DrawnPoint>& curve) {
   const double largest = std::abs(twice_area(curve)) / 2;
   begin_after_longest_edge(curve);
   kept_.clear();
+  kept_.reserve(curve.size());
   corners_.clear();
   first_ = 0;
   keep(curve[0]);

@@ -25,10 +25,11 @@ struct DrawnPoint {
 /// Outwards they turn left, and are inside what the rest encloses.
 class SmallLoops {
  public:
-  explicit SmallLoops(bool moves_outwards) : turns_left_(moves_outwards) {}
+  SmallLoops(bool moves_outwards, std::pmr::memory_resource* memory)
+      : turns_left_(moves_outwards), kept_(memory), corners_(memory) {}
 
   /// Cost  some ten comparisons for each edge that follows soon after a way to a corner.
-  void drop_from(std::vector<DrawnPoint>& curve);
+  void drop_from(std::pmr::vector<DrawnPoint>& curve);
 
  private:
   struct Loop {
@@ -43,9 +44,9 @@ class SmallLoops {
   void cut_off(const Loop& loop);
 
   bool turns_left_;
-  std::vector<DrawnPoint> kept_;
-  std::vector<std::size_t> corners_;  ///< of the points kept those that end no side
-  std::size_t first_ = 0;             ///< edge kept from which on loops may go
+  std::pmr::vector<DrawnPoint> kept_;
+  std::pmr::vector<std::size_t> corners_;  ///< of the points kept those that end no side
+  std::size_t first_ = 0;                  ///< edge kept from which on loops may go
 };
 
 }  // namespace routebench::overlay

@@ -18,7 +18,9 @@ namespace routebench::overlay {
 class ToGrid {
  public:
   /// Coordinates must be as far as this from the grid's ends.
-  explicit ToGrid(double margin_mm = 0) : most_units_(kMaxUnits - margin_mm * kGridUnitsPerMm) {}
+  explicit ToGrid(double margin_mm = 0,
+                  std::pmr::memory_resource* memory = std::pmr::get_default_resource())
+      : most_units_(kMaxUnits - margin_mm * kGridUnitsPerMm), rings_(memory) {}
 
   [[nodiscard]] bool add(const Polygons& polygons, Winding winding) {
     return std::all_of(polygons.begin(), polygons.end(),

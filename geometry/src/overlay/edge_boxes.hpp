@@ -1,0 +1,124 @@
+#pragma once
+/// The boxes around edges, eight at a time.
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <memory_resource>
+#include <vector>
+
+#if defined(__SSE2__)
+#include <emmintrin.h>
+#endif
+
+#include "overlay/grid_rings.hpp"
+
+namespace routebench::overlay {
+
+/// Boxes by the number of their edge. Of not too many edges, those that come near one are found
+/// sooner by a look at all than by any order among them. Where they are more than 64, so are the
+/// boxes around every eight edges first, as edges that follow each other lie together.
+class EdgeBoxes {
+ public:
+  EdgeBoxes(std::uint32_t edges, std::pmr::memory_resource* memory)
+      : eights_(memory), groups_(memory), has_groups_(edges > 64) {
+    resize(edges);
+  }
+
+  /// Boxes that are added meet nothing until they are set.
+  void resize(std::uint32_t edges) {
+    eights_.resize((edges + 7) / 8);
+    if (has_groups_) groups_.resize((eights_.size() + 7) / 8);
+  }
+
+  void set(std::uint32_t edge, const GridBox& box) {
+    eights_[edge / 8].set(edge % 8, box);
+    if (has_groups_) groups_[edge / 64].widen(edge / 8 % 8, box);
+  }
+
+  [[nodiscard]] GridBox operator[](std::uint32_t edge) const {
+    return eights_[edge / 8].box(edge % 8);
+  }
+
+  /// Calls visit(edge) for each of the first `edges` whose box meets another one.
+  /// Cost  two instructions a box.
+  template <typename Visit>
+  void visit_meeting(const GridBox& box, std::uint32_t edges, Visit&& visit) const {
+    const std::uint32_t eights = (edges + 7) / 8;
+    const auto look_at = [&](std::uint32_t eight) {
+      visit_bits(eights_[eight].meeting(box), 8 * eight, edges, visit);
+    };
+    if (!has_groups_)
+      for (std::uint32_t eight = 0; eight < eights; ++eight) look_at(eight);
+    else
+      for (std::uint32_t first = 0; first < eights; first += 8)
+        visit_bits(groups_[first / 8].meeting(box), first, eights, look_at);
+  }
+
+ private:
+  using Coordinates = std::array<std::int32_t, 8>;
+
+  static constexpr Coordinates all(std::int32_t value) {
+    return {value, value, value, value, value, value, value, value};
+  }
+
+  /// Calls visit(number) for the numbers below `end` whose bits, of `begin` and on, are set.
+  template <typename Visit>
+  static void visit_bits(std::uint32_t bits, std::uint32_t begin, std::uint32_t end,
+                         Visit&& visit) {
+    if (end - begin < 8) bits &= (1U << (end - begin)) - 1;
+    for (; bits != 0; bits &= bits - 1)
+      visit(begin + static_cast<std::uint32_t>(std::countr_zero(bits)));
+  }
+
+  struct alignas(16) Eight {
+    Coordinates left = all(kMaxUnits + 1), low = left, right = all(-kMaxUnits - 1), high = right;
+
+    [[nodiscard]] GridBox box(std::size_t k) const {
+      return {{left[k], low[k]}, {right[k], high[k]}};
+    }
+    void set(std::size_t k, const GridBox& box) {
+      left[k] = box.lower.x;
+      low[k] = box.lower.y;
+      right[k] = box.upper.x;
+      high[k] = box.upper.y;
+    }
+    void widen(std::size_t k, const GridBox& box) {
+      left[k] = std::min(left[k], box.lower.x);
+      low[k] = std::min(low[k], box.lower.y);
+      right[k] = std::max(right[k], box.upper.x);
+      high[k] = std::max(high[k], box.upper.y);
+    }
+
+    /// A bit for each that meets a box.
+    [[nodiscard]] std::uint32_t meeting(const GridBox& box) const {
+#if defined(__SSE2__)
+      const auto apart = [&](std::size_t k) {
+        const auto four = [k](const Coordinates& eight) {
+          return _mm_load_si128(reinterpret_cast<const __m128i*>(eight.data() + k));
+        };
+        const auto beside = _mm_or_si128(_mm_cmpgt_epi32(four(left), _mm_set1_epi32(box.upper.x)),
+                                         _mm_cmpgt_epi32(_mm_set1_epi32(box.lower.x), four(right)));
+        const auto above = _mm_or_si128(_mm_cmpgt_epi32(four(low), _mm_set1_epi32(box.upper.y)),
+                                        _mm_cmpgt_epi32(_mm_set1_epi32(box.lower.y), four(high)));
+        return _mm_or_si128(beside, above);
+      };
+      const __m128i bytes = _mm_packs_epi16(_mm_packs_epi32(apart(0), apart(4)), __m128i{});
+      return ~static_cast<std::uint32_t>(_mm_movemask_epi8(bytes)) & 0xFFU;
+#else
+      std::uint32_t bits = 0;
+      for (std::size_t k = 0; k < 8; ++k)
+        bits |= static_cast<std::uint32_t>(this->box(k).meets(box)) << k;
+      return bits;
+#endif
+    }
+  };
+
+  std::pmr::vector<Eight> eights_;
+  std::pmr::vector<Eight> groups_;  // boxes of eights
+  bool has_groups_;
+};
+
+}  // namespace routebench::overlay
