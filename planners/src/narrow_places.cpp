@@ -47,6 +47,19 @@ class Follower {
     return ring_ != nullptr && squared_to(p, edge_) <= within_squared;
   }
 
+  /// Whether the edge where it is, or the next one, comes as near as that to all between two points.
+  /// Moves on to it.
+  bool runs_beside(Point2 a, Point2 b, double within_squared) {
+    if (ring_ == nullptr) return false;
+    for (const std::size_t edge : {after(edge_, 1), edge_}) {
+      // What is near a segment is convex.
+      if (squared_to(b, edge) > within_squared || squared_to(a, edge) > within_squared) continue;
+      edge_ = edge;
+      return true;
+    }
+    return false;
+  }
+
   /// Moves on along the ring as long as that leads nearer to p, until it is near enough; the
   /// squared distance there.
   double follow(Point2 p, double enough_squared) {
@@ -123,6 +136,7 @@ class RingProof {
   bool look(Visit&& visit) {
     for (std::size_t i = 0; i < ring_.size(); ++i) {
       const Point2 corner = ring_[i], next = ring_[after(i)];
+      if (searches_ > 0 && inset_.runs_beside(corner, next, squared_reach(1))) continue;
       if (!visit(corner, has_inset_beside(corner, i))) return false;
       // Between corners too, as near to them as a stub is long that has room for a line.
       const int pieces =
