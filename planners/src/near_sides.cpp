@@ -124,6 +124,8 @@ class EdgeTree {
 }  // namespace
 
 bool has_near_sides(const Polygon& polygon, double width_mm, double apart_mm) {
+  // No two places of one ring are farther apart than half its length.
+  if (polygon.holes.empty() && perimeter_mm(polygon.outer) < 2 * apart_mm) return false;
   return EdgeTree(polygon, width_mm, apart_mm).has_near_sides();
 }
 
