@@ -47,8 +47,8 @@ class Follower {
     return ring_ != nullptr && squared_to(p, edge_) <= within_squared;
   }
 
-  /// Whether the edge where it is, or the next one, comes as near as that to all between two points.
-  /// Moves on to it.
+  /// Whether the edge where it is, or the next one, comes as near as that to all between two
+  /// points. Moves on to it.
   bool runs_beside(Point2 a, Point2 b, double within_squared) {
     if (ring_ == nullptr) return false;
     for (const std::size_t edge : {after(edge_, 1), edge_}) {
@@ -227,8 +227,10 @@ Box2 add(Box2 box, std::vector<Box2>& boxes) {
 
 /// Cuts a ring off where `depth`, linear in the place, is negative.
 template <typename Depth>
-Ring cut_off(const Ring& ring, const Depth& depth) {
+void cut_off(Ring& ring, const Depth& depth) {
+  if (std::all_of(ring.begin(), ring.end(), [&](Point2 p) { return depth(p) >= 0; })) return;
   Ring kept;
+  kept.reserve(ring.size() + 4);
   for (std::size_t i = 0; i < ring.size(); ++i) {
     const Point2 a = ring[i], b = ring[i + 1 < ring.size() ? i + 1 : 0];
     const double in_a = depth(a), in_b = depth(b);
@@ -236,7 +238,17 @@ Ring cut_off(const Ring& ring, const Depth& depth) {
     if ((in_a > 0 && in_b < 0) || (in_a < 0 && in_b > 0))
       kept.push_back(snap(lerp(a, b, in_a / (in_a - in_b))));
   }
-  return kept;
+  ring = std::move(kept);
+}
+
+/// What of a ring lies in a box; empty if nothing does.
+Ring cut_to(Ring ring, const Box2& box) {
+  cut_off(ring, [&](Point2 p) { return p.x - box.lower.x; });
+  cut_off(ring, [&](Point2 p) { return box.upper.x - p.x; });
+  cut_off(ring, [&](Point2 p) { return p.y - box.lower.y; });
+  cut_off(ring, [&](Point2 p) { return box.upper.y - p.y; });
+  if (ring.size() < 3) ring.clear();
+  return ring;
 }
 
 }  // namespace
@@ -271,20 +283,21 @@ std::vector<Box2> doubtful_places(const Polygons& inset, const Polygons& area, d
 }
 
 Polygons clipped(const Polygons& polygons, const Box2& box) {
-  if (polygons.empty() || holds(box, bounding_box(polygons))) return polygons;
-  std::vector<Ring> rings;
-  const auto add_ring = [&](const Ring& ring) {
-    Ring kept = cut_off(ring, [&](Point2 p) { return p.x - box.lower.x; });
-    kept = cut_off(kept, [&](Point2 p) { return box.upper.x - p.x; });
-    kept = cut_off(kept, [&](Point2 p) { return p.y - box.lower.y; });
-    kept = cut_off(kept, [&](Point2 p) { return box.upper.y - p.y; });
-    if (kept.size() >= 3) rings.push_back(std::move(kept));
-  };
+  Polygons kept;
   for (const Polygon& polygon : polygons) {
-    add_ring(polygon.outer);
-    for (const Ring& hole : polygon.holes) add_ring(hole);
+    const Box2 bounds = bounding_box({polygon});
+    if (!meet(box, bounds)) continue;
+    if (holds(box, bounds)) {
+      kept.push_back(polygon);
+      continue;
+    }
+    Polygon part{cut_to(polygon.outer, box), {}};
+    if (part.outer.empty()) continue;
+    for (const Ring& hole : polygon.holes)
+      if (Ring rest = cut_to(hole, box); !rest.empty()) part.holes.push_back(std::move(rest));
+    kept.push_back(std::move(part));
   }
-  return polygons_from_rings(std::move(rings), FillRule::kEvenOdd);
+  return kept;
 }
 
 }  // namespace routebench

@@ -20,8 +20,9 @@ namespace routebench {
                                                 double distance_mm, double slack_mm,
                                                 double margin_mm);
 
-/// The part of polygons that lies in a box with corners on the grid. Cost   linear, and a Boolean
-/// operation on what is in the box.
+/// The part of polygons that lies in a box with corners on the grid. Pieces of one ring stay one
+/// ring, which runs from piece to piece along the box and there may run over itself and over holes.
+/// Cost   linear.
 [[nodiscard]] Polygons clipped(const Polygons& polygons, const Box2& box);
 
 }  // namespace routebench

@@ -95,7 +95,9 @@ void append(std::vector<T> more, std::vector<T>& to) {
 /// What of an area is farther than `reach_mm` from what is laid. Most sides of the area are as far
 /// as that, and would cross those of what is laid, grown, at every corner.
 Polygons left_open(const Polygons& area, const Polygons& laid, double reach_mm) {
-  return subtract(area, offset(laid, reach_mm + kSideMm));
+  const Polygons reached = offset_boundary(rings_of(laid), reach_mm + kSideMm);
+  return reached.empty() ? polygons_from_rings(rings_of(area), FillRule::kPositive)
+                         : subtract(area, reached);
 }
 
 /// Adds the rings round what lies between the centre lines of a wall and of the one before it.
