@@ -92,12 +92,11 @@ void append(std::vector<T> more, std::vector<T>& to) {
   std::move(more.begin(), more.end(), std::back_inserter(to));
 }
 
-/// What of an area is farther than `reach_mm` from what is laid. Most sides of the area are as far
-/// as that, and would cross those of what is laid, grown, at every corner.
+/// What of an area is farther than `reach_mm` from what is laid; all of it, as it is, if nothing
+/// is. Most sides of the area are as far as that, and would cross those of what is laid, grown, at
+/// every corner.
 Polygons left_open(const Polygons& area, const Polygons& laid, double reach_mm) {
-  const Polygons reached = offset_boundary(rings_of(laid), reach_mm + kSideMm);
-  return reached.empty() ? polygons_from_rings(rings_of(area), FillRule::kPositive)
-                         : subtract(area, reached);
+  return subtract(area, offset_boundary(rings_of(laid), reach_mm + kSideMm));
 }
 
 /// Adds the rings round what lies between the centre lines of a wall and of the one before it.
@@ -213,10 +212,15 @@ Polygons without_strips(const Polygons& region, double reach_mm, double near_mm,
     (has_near_sides(part, width_mm, length_mm) ? narrow : wide).push_back(part);
   if (narrow.empty()) return region;
   const Polygons cores = offset(narrow, -near_mm / 2);
-  for (const Box2& box : doubtful_places(cores, narrow, near_mm / 2, slack_mm, margin_mm))
-    for (Polygon& part :
-         left_open(clipped(narrow, box), clipped(cores, grown(box, margin_mm)), near_mm / 2))
+  for (const Box2& box : doubtful_places(cores, narrow, near_mm / 2, slack_mm, margin_mm)) {
+    const Polygons laid = clipped(cores, grown(box, margin_mm));
+    Polygons open = clipped(narrow, box);
+    // Clipped rings may hold several parts.
+    open = laid.empty() ? polygons_from_rings(rings_of(open), FillRule::kPositive)
+                        : left_open(open, laid, near_mm / 2);
+    for (Polygon& part : open)
       if (is_strip(part, reach_mm, context)) strips.push_back(std::move(part));
+  }
   if (strips.empty()) return region;
   append(subtract(narrow, strips), wide);
   return wide;
