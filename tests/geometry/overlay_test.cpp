@@ -279,6 +279,37 @@ TEST(Overlay, DoesNotDependOnWhatElseThereIs) {
   }
 }
 
+// A few hundred sides may cross each other at tens of thousands of places.
+TEST(Overlay, CombsThatCrossMakeAllTheirSquares) {
+  const auto comb = [](int teeth, bool turned) {
+    Ring ring = {{-1, -1}};
+    for (int i = 0; i < teeth; ++i) {
+      const double x = 2 * i;
+      ring.insert(ring.end(), {{x, -1}, {x, 0}, {x, 1000}, {x + 1, 1000}, {x + 1, 0}, {x + 1, -1}});
+    }
+    const double end = 2 * teeth;
+    ring.insert(ring.end(), {{end, -1}, {end, -2}, {-1, -2}});
+    if (turned) {
+      for (Point2& p : ring) p = {p.y, p.x};
+      std::reverse(ring.begin(), ring.end());
+    }
+    return polygons_from_rings({ring}, FillRule::kNonZero);
+  };
+  for (const int teeth : {1, 5, 20, 60}) {
+    const Polygons upright = comb(teeth, false), level = comb(teeth, true);
+    const Polygons both = intersect(upright, level);
+    const auto squares = std::count_if(both.begin(), both.end(), [](const Polygon& polygon) {
+      return polygon == Polygon{test::rectangle(polygon.outer[0].x, polygon.outer[0].y,
+                                                polygon.outer[0].x + 1, polygon.outer[0].y + 1),
+                                {}};
+    });
+    EXPECT_EQ(squares, teeth * teeth);
+    EXPECT_EQ(both.size(), static_cast<std::size_t>(teeth * teeth));
+    EXPECT_DOUBLE_EQ(area_mm2(unite(upright, level)) + area_mm2(both),
+                     area_mm2(upright) + area_mm2(level));
+  }
+}
+
 // Beyond a metre from the origin another library takes over: both must agree. Up to there
 // differences of coordinates need all of 32 bits.
 TEST(Overlay, DoesNotDependOnThePlace) {
