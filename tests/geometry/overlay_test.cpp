@@ -241,6 +241,75 @@ TEST(Overlay, SidesThatNearlyCoincideAreCutNoOftenerThanTheyCross) {
       }
 }
 
+// How edges that meet are sought depends on how many there are: by a look at the boxes of all, by
+// one at boxes of boxes first, by cells.
+TEST(Overlay, DoesNotDependOnWhatElseThereIs) {
+  for (const int sides : {3, 100, 700, 2000}) {
+    SCOPED_TRACE("beside a disc of " + std::to_string(sides) + " sides");
+    const Ring disc = test::star(1, sides, {200, 100}, 50, 50);
+    const auto beside = [](Polygons polygons, const Polygons& other) {
+      polygons.insert(polygons.end(), other.begin(), other.end());
+      return polygons;
+    };
+    const Polygons far = polygons_from_rings({disc}, FillRule::kNonZero);
+    std::mt19937_64 random(3);
+    for (int round = 0; round < 40; ++round) {
+      const std::vector<Ring> rings = lattice_rings(random, 1 + round % 5);
+      std::vector<Ring> more = rings;
+      more.push_back(disc);
+      for (const FillRule rule : {FillRule::kNonZero, FillRule::kEvenOdd, FillRule::kPositive})
+        EXPECT_EQ(polygons_from_rings(more, rule), beside(polygons_from_rings(rings, rule), far));
+      const Polygons a = polygons_from_rings(rings, FillRule::kEvenOdd);
+      const Polygons b = polygons_from_rings(lattice_rings(random, 3), FillRule::kEvenOdd);
+      const Polygons far_a = beside(a, far), far_b = beside(b, far);
+      EXPECT_EQ(unite(far_a, b), beside(unite(a, b), far));
+      EXPECT_EQ(intersect(far_a, far_b), beside(intersect(a, b), far));
+      EXPECT_EQ(subtract(far_a, b), beside(subtract(a, b), far));
+      for (const double distance : {-0.9, -0.4, -0.1, 0.1, 0.4, 0.9})
+        EXPECT_EQ(offset(far_a, distance), beside(offset(a, distance), offset(far, distance)))
+            << "round " << round << ", by " << distance;
+    }
+    for (const int copies : {3, 6, 12}) {
+      const std::vector<Ring> rings = nearly_equal_rings(12, copies, 8);
+      std::vector<Ring> more = rings;
+      more.push_back(disc);
+      EXPECT_EQ(polygons_from_rings(more, FillRule::kEvenOdd),
+                beside(polygons_from_rings(rings, FillRule::kEvenOdd), far));
+    }
+  }
+}
+
+// A few hundred sides may cross each other at tens of thousands of places.
+TEST(Overlay, CombsThatCrossMakeAllTheirSquares) {
+  const auto comb = [](int teeth, bool turned) {
+    Ring ring = {{-1, -1}};
+    for (int i = 0; i < teeth; ++i) {
+      const double x = 2 * i;
+      ring.insert(ring.end(), {{x, -1}, {x, 0}, {x, 1000}, {x + 1, 1000}, {x + 1, 0}, {x + 1, -1}});
+    }
+    const double end = 2 * teeth;
+    ring.insert(ring.end(), {{end, -1}, {end, -2}, {-1, -2}});
+    if (turned) {
+      for (Point2& p : ring) p = {p.y, p.x};
+      std::reverse(ring.begin(), ring.end());
+    }
+    return polygons_from_rings({ring}, FillRule::kNonZero);
+  };
+  for (const int teeth : {1, 5, 20, 60}) {
+    const Polygons upright = comb(teeth, false), level = comb(teeth, true);
+    const Polygons both = intersect(upright, level);
+    const auto squares = std::count_if(both.begin(), both.end(), [](const Polygon& polygon) {
+      return polygon == Polygon{test::rectangle(polygon.outer[0].x, polygon.outer[0].y,
+                                                polygon.outer[0].x + 1, polygon.outer[0].y + 1),
+                                {}};
+    });
+    EXPECT_EQ(squares, teeth * teeth);
+    EXPECT_EQ(both.size(), static_cast<std::size_t>(teeth * teeth));
+    EXPECT_DOUBLE_EQ(area_mm2(unite(upright, level)) + area_mm2(both),
+                     area_mm2(upright) + area_mm2(level));
+  }
+}
+
 // Beyond a metre from the origin another library takes over: both must agree. Up to there
 // differences of coordinates need all of 32 bits.
 TEST(Overlay, DoesNotDependOnThePlace) {

@@ -17,25 +17,28 @@
 
 namespace routebench::overlay {
 
-/// Boxes by the number of their edge. Of not too many edges, those that come near one are found
-/// sooner by a look at all than by any order among them. Where they are more than 64, so are the
-/// boxes around every eight edges first, as edges that follow each other lie together.
+/// Boxes by the number of their edge. Of few edges, those that come near one are found sooner by a
+/// look at all than by any order among them. Of more, the boxes around every eight edges are looked
+/// at first, as edges that follow each other lie together.
 class EdgeBoxes {
  public:
   EdgeBoxes(std::uint32_t edges, std::pmr::memory_resource* memory)
-      : eights_(memory), groups_(memory), has_groups_(edges > 64) {
+      : eights_(memory), groups_(memory) {
     resize(edges);
   }
 
   /// Boxes that are added meet nothing until they are set.
   void resize(std::uint32_t edges) {
+    const std::size_t ungrouped = groups_.empty() ? 8 * eights_.size() : 0;
     eights_.resize((edges + 7) / 8);
-    if (has_groups_) groups_.resize((eights_.size() + 7) / 8);
+    if (edges <= kFewEdges) return;
+    groups_.resize((eights_.size() + 7) / 8);
+    for (std::uint32_t edge = 0; edge < ungrouped; ++edge) widen_group(edge);
   }
 
   void set(std::uint32_t edge, const GridBox& box) {
     eights_[edge / 8].set(edge % 8, box);
-    if (has_groups_) groups_[edge / 64].widen(edge / 8 % 8, box);
+    if (!groups_.empty()) widen_group(edge);
   }
 
   [[nodiscard]] GridBox operator[](std::uint32_t edge) const {
@@ -50,7 +53,7 @@ class EdgeBoxes {
     const auto look_at = [&](std::uint32_t eight) {
       visit_bits(eights_[eight].meeting(box), 8 * eight, edges, visit);
     };
-    if (!has_groups_)
+    if (groups_.empty())
       for (std::uint32_t eight = 0; eight < eights; ++eight) look_at(eight);
     else
       for (std::uint32_t first = 0; first < eights; first += 8)
@@ -58,6 +61,8 @@ class EdgeBoxes {
   }
 
  private:
+  static constexpr std::uint32_t kFewEdges = 64;
+
   using Coordinates = std::array<std::int32_t, 8>;
 
   static constexpr Coordinates all(std::int32_t value) {
@@ -116,9 +121,12 @@ class EdgeBoxes {
     }
   };
 
+  void widen_group(std::uint32_t edge) {
+    groups_[edge / 64].widen(edge / 8 % 8, eights_[edge / 8].box(edge % 8));
+  }
+
   std::pmr::vector<Eight> eights_;
-  std::pmr::vector<Eight> groups_;  // boxes of eights
-  bool has_groups_;
+  std::pmr::vector<Eight> groups_;  // boxes of eights; none of few
 };
 
 }  // namespace routebench::overlay

@@ -2,7 +2,6 @@
 
 #include <bit>
 #include <cmath>
-#include <cstdlib>
 #include <tuple>
 #include <utility>
 
@@ -47,24 +46,11 @@ GridPoint crossing_of(Edge e, Edge f) {
           e.from.y + static_cast<std::int32_t>(std::lround(share * (e.to.y - e.from.y)))};
 }
 
-EdgeCells::EdgeCells(const GridRings& rings) : head_(rings.memory()), items_(rings.memory()) {
-  lower_ = upper_ = rings.points().front();
-  double extents = 0;
-  for (std::uint32_t ring = 0; ring < rings.rings(); ++ring) {
-    const std::span<const GridPoint> points = rings.ring(ring);
-    GridPoint before = points.back();
-    for (const GridPoint p : points) {
-      lower_ = {std::min(lower_.x, p.x), std::min(lower_.y, p.y)};
-      upper_ = {std::max(upper_.x, p.x), std::max(upper_.y, p.y)};
-      extents += std::max(std::abs(p.x - before.x), std::abs(p.y - before.y));
-      before = p;
-    }
-  }
-  const double edges = rings.size();
-  shift_ = shift_for(upper_.x - lower_.x, upper_.y - lower_.y, extents / edges, edges);
+void EdgeCells::make_cells(std::uint32_t edges, double mean_extent) {
+  shift_ = shift_for(upper_.x - lower_.x, upper_.y - lower_.y, mean_extent, edges);
   columns_ = column(upper_.x) + 1;
   head_.assign(std::size_t{columns_} * (row(upper_.y) + 1), kNone);
-  items_.reserve(2 * std::size_t{rings.size()});
+  items_.reserve(2 * std::size_t{edges});
 }
 
 }  // namespace routebench::overlay

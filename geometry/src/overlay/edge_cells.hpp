@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <cstdlib>
+#include <memory_resource>
 #include <span>
 #include <vector>
 
@@ -19,8 +21,22 @@ struct Edge {
 /// Cost   to add an edge: linear in the cells that it runs through and in the edges there.
 class EdgeCells {
  public:
-  /// Cells for the edges of these rings and others within their bounds.
-  explicit EdgeCells(const GridRings& rings);
+  /// Cells for so many edges of rings, at least one, and others within their bounds; none of them
+  /// is added.
+  template <typename EdgeOf>
+  EdgeCells(std::uint32_t edges, EdgeOf&& edge_of, std::pmr::memory_resource* memory)
+      : head_(memory), items_(memory) {
+    lower_ = upper_ = edge_of(0).from;
+    double extents = 0;
+    for (std::uint32_t e = 0; e < edges; ++e) {
+      const Edge edge = edge_of(e);
+      const GridPoint p = edge.from, q = edge.to;
+      lower_ = {std::min(lower_.x, p.x), std::min(lower_.y, p.y)};
+      upper_ = {std::max(upper_.x, p.x), std::max(upper_.y, p.y)};
+      extents += std::max(std::abs(p.x - q.x), std::abs(p.y - q.y));
+    }
+    make_cells(edges, extents / edges);
+  }
 
   /// Adds an edge by its number; calls near(other's number) for each that is in one of its cells,
   /// possibly several times.
@@ -63,6 +79,8 @@ class EdgeCells {
   void trace(Ray& ray) const;
 
  private:
+  void make_cells(std::uint32_t edges, double mean_extent);
+
   struct Item {
     std::uint32_t edge;
     std::uint32_t next;

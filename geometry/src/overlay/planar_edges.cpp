@@ -12,6 +12,7 @@ constexpr int kMaxRounds = 20;
 
 /// So many are found sooner by their boxes than by cells.
 constexpr std::uint32_t kFewEdges = 1024;
+constexpr std::uint32_t kFewPieces = 16 * kFewEdges;  // which are shorter
 
 constexpr std::size_t kFewCuts = 16;  // most rings have fewer
 
@@ -37,9 +38,9 @@ PlanarEdges::PlanarEdges(const GridRings& rings, Unmet)
       meets_(rings.memory()),
       boxes_(rings.size(), rings.memory()),
       cuts_(rings.memory()) {
-  if (size() > kFewEdges) cells_.emplace(rings);
   cuts_.reserve(kFewCuts);
   link();
+  if (size() > kFewEdges) make_cells();  // filled while edges are looked at
 }
 
 PlanarEdges::PlanarEdges(const GridRings& rings) : PlanarEdges(rings, Unmet()) {
@@ -109,6 +110,7 @@ void PlanarEdges::cut_until_planar() {
     cut_all_at_cuts();
     const std::uint32_t uncut = size();
     const std::pmr::vector<std::uint32_t> pieces = apply_cuts();
+    if (size() > (cells_ ? 2 * cells_made_for_ : kFewPieces)) make_cells_without(pieces);
     // A piece that keeps its edge's number is in the cells twice, which does no harm. Without cells
     // added pieces look at those before them.
     for (const std::uint32_t e : pieces)
@@ -123,6 +125,21 @@ void PlanarEdges::cut_until_planar() {
       });
   }
   are_planar_ = cuts_.empty();
+}
+
+void PlanarEdges::make_cells() {
+  cells_.emplace(
+      size(), [this](std::uint32_t e) { return edge(e); }, memory());
+  cells_made_for_ = size();
+}
+
+/// Pieces are shorter than the edges that the cells have been made for.
+void PlanarEdges::make_cells_without(std::span<const std::uint32_t> pieces) {
+  make_cells();
+  std::pmr::vector<std::uint8_t> is_piece(size(), 0, memory());
+  for (const std::uint32_t e : pieces) is_piece[e] = 1;
+  for (std::uint32_t e = 0; e < size(); ++e)
+    if (is_piece[e] == 0) cells_->add(e, edge(e), [](std::uint32_t) {});
 }
 
 void PlanarEdges::cut_all_at_cuts() {

@@ -70,6 +70,8 @@ class PlanarEdges {
   void link();
   void set_box(std::uint32_t edge);
   void cut_until_planar();
+  void make_cells();
+  void make_cells_without(std::span<const std::uint32_t> pieces);
   /// Cuts whatever passes through the pixel of a cut there too.
   void cut_all_at_cuts();
   std::pmr::vector<std::uint32_t> apply_cuts();
@@ -83,8 +85,8 @@ class PlanarEdges {
   [[nodiscard]] bool are_neighbours(std::uint32_t e, std::uint32_t f) const {
     return next_[e] == f || next_[f] == e;
   }
-  /// Calls near(f) for edges whose box meets that of an edge, possibly several times: without cells
-  /// for those of the first `others`, with cells for those added before.
+  /// Calls near(f) for edges whose box meets that of an edge: without cells for those of the first
+  /// `others`, with cells for those added before, possibly several times, and adds the edge.
   template <typename Near>
   void visit_near(std::uint32_t e, std::uint32_t others, Near&& near);
 
@@ -94,6 +96,7 @@ class PlanarEdges {
   std::pmr::vector<std::uint8_t> meets_;
   EdgeBoxes boxes_;
   std::optional<EdgeCells> cells_;  // of many edges
+  std::uint32_t cells_made_for_ = 0;
   std::pmr::vector<Cut> cuts_;
   bool any_meets_ = false;
   bool are_planar_ = true;

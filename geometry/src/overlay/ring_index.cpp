@@ -18,18 +18,23 @@ bool segments_meet(const Edge& a, const Edge& b) {
          !apart(turn(b.from, b.to, a.from), turn(b.from, b.to, a.to));
 }
 
+std::pmr::vector<std::uint32_t> next_points(const GridRings& rings) {
+  std::pmr::vector<std::uint32_t> next(rings.size(), rings.memory());
+  for (std::uint32_t ring = 0; ring < rings.rings(); ++ring) {
+    const std::uint32_t begin = rings.begin(ring), end = rings.end(ring);
+    for (std::uint32_t i = begin; i < end; ++i) next[i] = i + 1 < end ? i + 1 : begin;
+  }
+  return next;
+}
+
 }  // namespace
 
 RingIndex::RingIndex(GridRings rings)
-    : rings_(std::move(rings)), next_(rings_.memory()), cells_(rings_) {
-  next_.resize(rings_.size());
-  for (std::uint32_t ring = 0; ring < rings_.rings(); ++ring) {
-    const std::uint32_t begin = rings_.begin(ring), end = rings_.end(ring);
-    for (std::uint32_t i = begin; i < end; ++i) {
-      next_[i] = i + 1 < end ? i + 1 : begin;
-      cells_.add(i, edge(i), [](std::uint32_t) {});
-    }
-  }
+    : rings_(std::move(rings)),
+      next_(next_points(rings_)),
+      cells_(
+          rings_.size(), [this](std::uint32_t e) { return edge(e); }, rings_.memory()) {
+  for (std::uint32_t e = 0; e < rings_.size(); ++e) cells_.add(e, edge(e), [](std::uint32_t) {});
 }
 
 bool RingIndex::holds(GridPoint p) const {

@@ -1,0 +1,158 @@
+/// Laws of what overlays are made of: boxes of edges, and memory for a while.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <memory_resource>
+#include <random>
+#include <vector>
+
+#include "overlay/edge_boxes.hpp"
+#include "overlay/scratch.hpp"
+
+namespace routebench::overlay {
+namespace {
+
+/// Small ones, and some that reach from end to end of the grid.
+GridBox random_box(std::mt19937_64& random) {
+  std::uniform_int_distribution<std::int32_t> place(-40, 40), size(0, 12);
+  std::uniform_int_distribution<int> kind(0, 15);
+  const GridPoint p{place(random), place(random)};
+  GridBox box{p, {p.x + size(random), p.y + size(random)}};
+  if (const int which = kind(random); which == 0) {
+    box.lower.x = -kMaxUnits;
+    box.upper.x = kMaxUnits;
+  } else if (which == 1) {
+    box.lower.y = -kMaxUnits;
+    box.upper.y = kMaxUnits;
+  } else if (which == 2) {
+    box.lower = box.upper = {kMaxUnits, kMaxUnits};
+  } else if (which == 3) {
+    box.lower = box.upper = {-kMaxUnits, -kMaxUnits};
+  }
+  return box;
+}
+
+TEST(EdgeBoxes, VisitsWhatMeetsByDefinition) {
+  std::mt19937_64 random(1);
+  for (const std::uint32_t edges : {1U, 7U, 8U, 9U, 63U, 64U, 65U, 200U, 513U}) {
+    EdgeBoxes boxes(edges, std::pmr::get_default_resource());
+    std::vector<GridBox> set(edges);
+    const auto set_box = [&](std::uint32_t e) {
+      set[e] = random_box(random);
+      boxes.set(e, set[e]);
+    };
+    for (std::uint32_t e = 0; e < edges; ++e) set_box(e);
+    const auto expect_all = [&] {
+      for (int i = 0; i < 200; ++i) {
+        const GridBox box = random_box(random);
+        const auto first = std::uniform_int_distribution<std::uint32_t>(
+            0, static_cast<std::uint32_t>(set.size()))(random);
+        std::vector<std::uint32_t> visited, meeting;
+        boxes.visit_meeting(box, first, [&](std::uint32_t e) { visited.push_back(e); });
+        for (std::uint32_t e = 0; e < first; ++e)
+          if (set[e].meets(box)) meeting.push_back(e);
+        EXPECT_EQ(visited, meeting) << first << " of " << set.size();
+      }
+    };
+    expect_all();
+    // Cuts add edges, and change those that they cut.
+    const auto more = static_cast<std::uint32_t>(edges + edges / 2 + 1);
+    set.resize(more);
+    boxes.resize(more);
+    for (std::uint32_t e = edges; e < more; ++e) set_box(e);
+    for (std::uint32_t e = 0; e < edges; e += 3) set_box(e);
+    expect_all();
+  }
+}
+
+TEST(EdgeBoxes, MeetsNothingBeforeItIsSet) {
+  EdgeBoxes boxes(100, std::pmr::get_default_resource());
+  const GridBox all{{-kMaxUnits, -kMaxUnits}, {kMaxUnits, kMaxUnits}};
+  boxes.visit_meeting(all, 100, [](std::uint32_t e) { ADD_FAILURE() << e; });
+}
+
+struct Piece {
+  std::byte* memory;
+  std::size_t bytes;
+  std::size_t alignment;
+  unsigned char mark;
+};
+
+Piece take(std::pmr::memory_resource& from, std::size_t bytes, std::size_t alignment,
+           unsigned char mark) {
+  auto* const memory = static_cast<std::byte*>(from.allocate(bytes, alignment));
+  EXPECT_EQ(reinterpret_cast<std::uintptr_t>(memory) % alignment, 0U);
+  std::memset(memory, mark, bytes);
+  return {memory, bytes, alignment, mark};
+}
+
+void expect_own(const Piece& piece) {
+  EXPECT_TRUE(std::all_of(piece.memory, piece.memory + piece.bytes,
+                          [&](std::byte b) { return b == std::byte{piece.mark}; }));
+}
+
+void give_back(std::pmr::memory_resource& to, const Piece& piece) {
+  expect_own(piece);
+  to.deallocate(piece.memory, piece.bytes, piece.alignment);
+}
+
+TEST(Scratch, HandsNoMemoryOutTwice) {
+  std::mt19937_64 random(1);
+  std::uniform_int_distribution<std::size_t> size(1, 3000), which(0, 1000);
+  std::uniform_int_distribution<int> align(0, 6), mark(0, 255);
+  Scratch scratch;
+  std::vector<Piece> pieces;
+  for (int i = 0; i < 2000; ++i) {
+    if (pieces.size() > 40 || (!pieces.empty() && which(random) < 400)) {
+      const std::size_t k = which(random) < 500 ? pieces.size() - 1 : which(random) % pieces.size();
+      give_back(scratch, pieces[k]);
+      pieces.erase(pieces.begin() + static_cast<std::ptrdiff_t>(k));
+    } else {
+      pieces.push_back(take(scratch, size(random), std::size_t{1} << align(random),
+                            static_cast<unsigned char>(mark(random))));
+    }
+  }
+  for (const Piece& piece : pieces) give_back(scratch, piece);
+}
+
+TEST(Scratch, GivesAllBackWhenItEnds) {
+  const auto first_place = [] {
+    Scratch scratch;
+    const Piece first = take(scratch, 100, 8, 1), second = take(scratch, 200, 8, 2);
+    give_back(scratch, first);
+    give_back(scratch, second);
+    return static_cast<const void*>(first.memory);
+  };
+  const void* const place = first_place();
+  for (std::size_t i = 0; i < Scratch::kBlockBytes / 50; ++i) EXPECT_EQ(first_place(), place);
+}
+
+TEST(Scratch, LeavesMemoryOfAnEarlierOneAlone) {
+  Scratch outer;
+  const Piece kept = take(outer, 5000, 8, 1);
+  {
+    Scratch inner;
+    const Piece piece = take(inner, 5000, 8, 2);
+    expect_own(kept);
+    give_back(inner, piece);
+  }
+  const Piece later = take(outer, 5000, 8, 3);
+  give_back(outer, kept);
+  give_back(outer, later);
+}
+
+TEST(Scratch, TakesFromTheHeapWhatDoesNotFit) {
+  Scratch scratch;
+  std::vector<Piece> pieces;
+  for (const std::size_t bytes : {Scratch::kBlockBytes, Scratch::kBlockBytes, std::size_t{100},
+                                  2 * Scratch::kBlockBytes, std::size_t{100}})
+    pieces.push_back(take(scratch, bytes, 16, static_cast<unsigned char>(pieces.size())));
+  for (const Piece& piece : pieces) give_back(scratch, piece);
+}
+
+}  // namespace
+}  // namespace routebench::overlay
