@@ -281,26 +281,28 @@ bool fits_between_lines(const Ring& ring, double apart_mm) {
 
 namespace {
 
-/// Clipper takes what the overlay cannot: parts of more than a metre from the origin, and round
-/// joins.
-Polygons offset_by_clipper(const cl::Paths& boundary, double distance_mm, Join join) {
+cl::Paths offset_by_clipper(const cl::Paths& boundary, double distance_mm, Join join) {
   cl::ClipperOffset offsetter(kMiterLimit, kArcToleranceMm * kGridUnitsPerMm);
   offsetter.AddPaths(boundary, join == Join::kMiter ? cl::jtMiter : cl::jtRound,
                      cl::etClosedPolygon);
   cl::Paths paths;
   offsetter.Execute(paths, distance_mm * kGridUnitsPerMm);
   for (cl::Path& path : paths) path = cleaned(path);
-  // Cleaning moves sides, so rings may overlap by as much: the union makes polygons of them again.
+  return paths;
+}
+
+/// Cleaning moves sides, so rings may overlap by as much: the union makes polygons of them again.
+Polygons united(const cl::Paths& paths, cl::PolyFillType fill) {
   cl::Clipper clipper;
   clipper.AddPaths(paths, cl::ptSubject, true);
   cl::PolyTree tree;
-  clipper.Execute(cl::ctUnion, tree, cl::pftNonZero, cl::pftNonZero);
+  clipper.Execute(cl::ctUnion, tree, fill, fill);
   return from_clipper(tree);
 }
 
-std::optional<Polygons> offset_on_grid(const overlay::GridRings& rings, double distance_mm) {
-  const auto faces =
-      overlay::offset_rings(rings, distance_mm * kGridUnitsPerMm, kCleanMm * kGridUnitsPerMm);
+std::optional<Polygons> offset_on_grid(const overlay::GridRings& rings,
+                                       std::span<const double> distances) {
+  const auto faces = overlay::offset_rings(rings, distances, kCleanMm * kGridUnitsPerMm);
   return faces ? std::optional(overlay::to_polygons(*faces)) : std::nullopt;
 }
 
@@ -309,6 +311,8 @@ double margin_mm(double distance_mm) { return 2 * std::abs(distance_mm); }
 
 }  // namespace
 
+// Clipper takes what the overlay cannot: parts of more than a metre from the origin, and round
+// joins.
 Polygons offset(const Polygons& polygons, double distance_mm, Join join) {
   if (distance_mm == 0 || polygons.empty()) return polygons;
   overlay::Scratch scratch;
@@ -316,20 +320,37 @@ Polygons offset(const Polygons& polygons, double distance_mm, Join join) {
   const auto add = [&](const Polygon& polygon) {
     return fits_between_lines(polygon.outer, -2 * distance_mm) || grid.add(polygon, {1, 0});
   };
-  if (join == Join::kMiter && std::all_of(polygons.begin(), polygons.end(), add))
-    if (auto moved = offset_on_grid(grid.take(), distance_mm)) return *std::move(moved);
-  return offset_by_clipper(to_clipper(polygons), distance_mm, join);
+  if (join == Join::kMiter && std::all_of(polygons.begin(), polygons.end(), add)) {
+    const std::pmr::vector<double> distances(grid.rings(), distance_mm * kGridUnitsPerMm, &scratch);
+    if (auto moved = offset_on_grid(grid.take(), distances)) return *std::move(moved);
+  }
+  return united(offset_by_clipper(to_clipper(polygons), distance_mm, join), cl::pftNonZero);
 }
 
-Polygons offset_boundary(const std::vector<Ring>& rings, double distance_mm) {
+Polygons offset_boundary(const std::vector<Ring>& rings, const std::vector<double>& distances_mm) {
+  if (rings.empty()) return {};
   overlay::Scratch scratch;
-  ToGrid grid(margin_mm(distance_mm), &scratch);
-  const auto add = [&](const Ring& ring) { return grid.add(ring, {1, 0}); };
-  if (std::all_of(rings.begin(), rings.end(), add))
-    if (auto moved = offset_on_grid(grid.take(), distance_mm)) return *std::move(moved);
+  const auto [least, most] = std::minmax_element(distances_mm.begin(), distances_mm.end());
+  ToGrid grid(std::max(margin_mm(*least), margin_mm(*most)), &scratch);
+  std::pmr::vector<double> distances(&scratch);
+  bool fits = true;
+  for (std::size_t i = 0; i < rings.size() && fits; ++i) {
+    fits = grid.add(rings[i], {1, 0});
+    if (grid.rings() > distances.size()) distances.push_back(distances_mm[i] * kGridUnitsPerMm);
+  }
+  if (fits)
+    if (auto moved = offset_on_grid(grid.take(), distances)) return *std::move(moved);
   cl::Paths paths;
-  for (const Ring& ring : rings) paths.push_back(to_clipper(ring));
-  return offset_by_clipper(paths, distance_mm, Join::kMiter);
+  for (std::size_t i = 0; i < rings.size(); ++i) {
+    cl::Path path = to_clipper(rings[i]);
+    const bool is_hole = !cl::Orientation(path);
+    if (is_hole) cl::ReversePath(path);
+    cl::Paths moved =
+        offset_by_clipper({path}, is_hole ? -distances_mm[i] : distances_mm[i], Join::kMiter);
+    if (is_hole) cl::ReversePaths(moved);
+    paths.insert(paths.end(), moved.begin(), moved.end());
+  }
+  return united(paths, cl::pftPositive);
 }
 
 Polygons without_thin_parts(const Polygons& polygons, double width_mm) {

@@ -276,31 +276,34 @@ Point2 lower_corner(const std::vector<Ring>& rings) {
 
 std::vector<Stroke> centre_lines(const Polygons& thin, const CentreLineRule& rule,
                                  const PlanContext& context) {
-  std::vector<Ring> rings;
+  TakenSides sides;
   const double least_mm2 = least_area_mm2(rule);
   for (const Polygon& polygon : thin)
     if (area_mm2(polygon) >= least_mm2)
-      for (Ring& ring : rings_of({polygon})) rings.push_back(std::move(ring));
-  return centre_lines(std::move(rings), rule, context);
+      for (Ring& ring : rings_of({polygon})) sides.rings.push_back(std::move(ring));
+  sides.taken_mm.resize(sides.rings.size());
+  return centre_lines(std::move(sides), rule, context);
 }
 
-std::vector<Stroke> centre_lines(std::vector<Ring> rings, const CentreLineRule& rule,
+std::vector<Stroke> centre_lines(TakenSides sides, const CentreLineRule& rule,
                                  const PlanContext& context) {
   std::vector<Stroke> strokes;
-  if (rings.empty()) return strokes;
+  if (sides.rings.empty()) return strokes;
   // Relative to a corner, so that the place does not matter.
-  const Point2 origin = lower_corner(rings);
-  for (Ring& ring : rings)
+  const Point2 origin = lower_corner(sides.rings);
+  for (Ring& ring : sides.rings)
     for (Point2& p : ring) p = snap(p - origin);
   // The middle lines of what is wide enough are about those of what is left if sides move inwards.
   const double inwards_mm = std::max(rule.min_width_mm / 2 - kCoreMm, 0.0);
-  for (const Polygon& core : offset_boundary(rings, -(rule.side_mm + inwards_mm))) {
+  std::vector<double> distances_mm;
+  for (const double taken_mm : sides.taken_mm) distances_mm.push_back(-taken_mm - inwards_mm);
+  for (const Polygon& core : offset_boundary(sides.rings, distances_mm)) {
     stop_if_asked(context);
     const Box2 box = bounding_box({core});
     const double extent_mm = distance(box.lower, box.upper) + 2 * inwards_mm;
     if (extent_mm < std::min(rule.min_length_mm, rule.min_dot_mm)) continue;
     // Beads are as wide as the sides let them be, not those of the core.
-    const Room room(rings, box, rule.side_mm, std::max(rule.max_width_mm, extent_mm));
+    const Room room(sides, box, std::max(rule.max_width_mm, extent_mm));
     StrokeCutter cutter(rule, room, origin, strokes);
     const std::size_t before = strokes.size();
     if (!cutter.cut_compact(core, inwards_mm))

@@ -211,38 +211,51 @@ void trim_free_ends(MiddleLine& line) {
 
 }  // namespace
 
-Room::Room(const std::vector<Ring>& rings, const Box2& places, double side_mm, double farthest_mm)
-    : side_mm_(side_mm) {
-  const double reach_mm = side_mm + farthest_mm;
-  const Point2 lower = places.lower - Point2{reach_mm, reach_mm};
-  const Point2 upper = places.upper + Point2{reach_mm, reach_mm};
-  for (const Ring& ring : rings) {
-    Point2 a = ring.back();
-    for (const Point2 b : ring) {
+Room::Room(const TakenSides& sides, const Box2& places, double farthest_mm) {
+  const auto like = [&](std::size_t ring) {
+    return std::find_if(sides_.begin(), sides_.end(),
+                        [&](const Side& side) { return side.taken_mm == sides.taken_mm[ring]; });
+  };
+  for (std::size_t i = 0; i < sides.rings.size(); ++i) {
+    if (like(i) == sides_.end()) sides_.push_back({sides.taken_mm[i], {}, std::nullopt});
+    const double reach_mm = sides.taken_mm[i] + farthest_mm;
+    const Point2 lower = places.lower - Point2{reach_mm, reach_mm};
+    const Point2 upper = places.upper + Point2{reach_mm, reach_mm};
+    Side& side = *like(i);
+    Point2 a = sides.rings[i].back();
+    for (const Point2 b : sides.rings[i]) {
       if (std::max(a.x, b.x) >= lower.x && std::min(a.x, b.x) <= upper.x &&
           std::max(a.y, b.y) >= lower.y && std::min(a.y, b.y) <= upper.y)
-        edges_.emplace_back(a, b);
+        side.edges.emplace_back(a, b);
       a = b;
     }
   }
-  if (edges_.size() <= kFewEdges) return;
-  Polygons outlines;  // the grid is asked for distances only
-  for (const Ring& ring : rings) outlines.push_back({ring, {}});
-  grid_.emplace(outlines);
-  edges_.clear();
+  for (Side& side : sides_) {
+    if (side.edges.size() <= kFewEdges) continue;
+    Polygons outlines;  // the grid is asked for distances only
+    for (std::size_t i = 0; i < sides.rings.size(); ++i)
+      if (sides.taken_mm[i] == side.taken_mm) outlines.push_back({sides.rings[i], {}});
+    side.grid.emplace(outlines);
+    side.edges.clear();
+  }
 }
 
 std::optional<double> Room::radius_mm(Point2 p, double limit_mm) const {
-  const double farthest_mm = limit_mm + side_mm_;
-  if (grid_) {
-    const auto mm = grid_->distance_to_edge_mm(p, farthest_mm);
-    return mm ? std::optional(std::max(*mm - side_mm_, 0.0)) : std::nullopt;
+  std::optional<double> least;
+  for (const Side& side : sides_) {
+    const double farthest_mm = least.value_or(limit_mm) + side.taken_mm;
+    std::optional<double> mm;
+    if (side.grid) {
+      mm = side.grid->distance_to_edge_mm(p, farthest_mm);
+    } else {
+      double squared = std::numeric_limits<double>::infinity();
+      for (const auto& [a, b] : side.edges)
+        squared = std::min(squared, squared_distance(p, nearest_on_segment(p, a, b)));
+      if (squared <= farthest_mm * farthest_mm) mm = std::sqrt(squared);
+    }
+    if (mm) least = std::max(*mm - side.taken_mm, 0.0);
   }
-  double least = std::numeric_limits<double>::infinity();
-  for (const auto& [a, b] : edges_)
-    least = std::min(least, squared_distance(p, nearest_on_segment(p, a, b)));
-  if (least > farthest_mm * farthest_mm) return std::nullopt;
-  return std::max(std::sqrt(least) - side_mm_, 0.0);
+  return least;
 }
 
 std::vector<MiddleLine> middle_lines(const Polygon& core, double inwards_mm, const Room& room,

@@ -8,24 +8,29 @@
 #include "routebench/geometry/edge_grid.hpp"
 #include "routebench/geometry/region.hpp"
 #include "routebench/geometry/types.hpp"
+#include "routebench/planning/centre_lines.hpp"
 
 namespace routebench {
 
-/// How far places in a part of an area are from what is taken along the area's sides.
+/// How far places in a narrow part are from what is taken along its sides.
 class Room {
  public:
-  /// Takes  the area's rings, a box around all places that will be asked for, how much is taken and
-  ///        the greatest radius of interest.
+  /// Takes  a box around all places that will be asked for, and the greatest radius of interest.
   /// Cost   linear in edges.
-  Room(const std::vector<Ring>& rings, const Box2& places, double side_mm, double farthest_mm);
+  Room(const TakenSides& sides, const Box2& places, double farthest_mm);
 
   /// Nothing if it is more than limit_mm, which is not beyond the greatest of interest.
   [[nodiscard]] std::optional<double> radius_mm(Point2 p, double limit_mm) const;
 
  private:
-  std::vector<std::pair<Point2, Point2>> edges_;  // near the places, if they are few
-  std::optional<EdgeGrid> grid_;                  // else
-  double side_mm_;
+  /// Edges along which as much is taken.
+  struct Side {
+    double taken_mm;
+    std::vector<std::pair<Point2, Point2>> edges;  // near the places, if they are few
+    std::optional<EdgeGrid> grid;                  // else
+  };
+
+  std::vector<Side> sides_;
 };
 
 /// A line along the middle, with the radius of the room at each point.

@@ -92,66 +92,65 @@ void append(std::vector<T> more, std::vector<T>& to) {
   std::move(more.begin(), more.end(), std::back_inserter(to));
 }
 
-/// What of an area is farther than `reach_mm` from what is laid; all of it, as it is, if nothing
-/// is. Most sides of the area are as far as that, and would cross those of what is laid, grown, at
-/// every corner.
-Polygons left_open(const Polygons& area, const Polygons& laid, double reach_mm) {
-  return subtract(area, offset_boundary(rings_of(laid), reach_mm + kSideMm));
-}
-
-/// Adds the rings round what lies between the centre lines of a wall and of the one before it.
-void append_band(const Polygons& before, const Polygons& region, std::vector<Ring>& rings) {
-  append(rings_of(before), rings);
+/// Adds the sides of what lies between a wall's centre line and what comes before it.
+void append_band(const Polygons& before, double before_mm, const Polygons& region, double wall_mm,
+                 TakenSides& sides) {
+  append(rings_of(before), sides.rings);
+  sides.taken_mm.resize(sides.rings.size(), before_mm);
   for (Ring& ring : rings_of(region)) {
     std::reverse(ring.begin(), ring.end());
-    rings.push_back(std::move(ring));
+    sides.rings.push_back(std::move(ring));
   }
+  sides.taken_mm.resize(sides.rings.size(), wall_mm);
 }
 
 }  // namespace
 
-WallGaps wall_gaps(const Polygons& polygons, const std::vector<Polygons>& regions, int count,
-                   const PlanContext& context) {
-  const double margin_mm = kMarginSpacings * context.spacing_mm;
-  WallGaps gaps;
+std::vector<TakenSides> wall_gaps(const Polygons& polygons, const std::vector<Polygons>& regions,
+                                  int count, const PlanContext& context) {
+  const double margin_mm = kMarginSpacings * context.spacing_mm, half_mm = context.spacing_mm / 2;
+  const Polygons none;
+  std::vector<TakenSides> gaps;
   for (std::size_t wall = 0; wall <= regions.size() && std::cmp_less(wall, count); ++wall) {
     stop_if_asked(context);
-    const Polygons& before = wall == 0 ? polygons : regions[wall - 1];
-    const Polygons none;
+    const bool is_first = wall == 0;
+    const Polygons& before = is_first ? polygons : regions[wall - 1];
     const Polygons& region = wall < regions.size() ? regions[wall] : none;
-    const double step_mm = wall == 0 ? context.line_width_mm / 2 : context.spacing_mm;
-    std::vector<Ring> band;
+    const double before_mm = is_first ? 0 : half_mm;
+    const double wall_mm = is_first ? context.line_width_mm / 2 : half_mm;
+    TakenSides& sides = gaps.emplace_back();
     // Where nothing is narrow, the wall's place grows back to where it came from.
-    for (const Box2& box : doubtful_places(region, before, step_mm, kStubMm, margin_mm)) {
-      const Polygons open = clipped(before, box);
-      if (wall > 0)
-        append_band(open, clipped(region, box), band);
-      else  // all that reaches into the box is laid there
-        append(left_open(open, clipped(region, grown(box, margin_mm)), step_mm), gaps.outside);
+    for (const Box2& box :
+         doubtful_places(region, before, before_mm + wall_mm, kStubMm, margin_mm)) {
+      // All that reaches into it: between walls nothing is open between the one before and the box.
+      const Polygons laid = clipped(region, is_first ? grown(box, margin_mm) : box);
+      append_band(clipped(before, box), before_mm, laid, wall_mm, sides);
     }
-    if (!band.empty()) gaps.between.push_back(std::move(band));
   }
   return gaps;
 }
 
 std::vector<Stroke> gap_lines(const Polygons& polygons, const std::vector<Polygons>& regions,
                               int count, double widest_mm, const PlanContext& context) {
-  WallGaps gaps = wall_gaps(polygons, regions, count, context);
-  CentreLineRule rule{.min_width_mm = narrowest_line_mm(context),
-                      .max_width_mm = widest_mm,
-                      .min_length_mm = context.line_width_mm / 2,
-                      .width = CentreLineWidth::kInscribed};
-  std::vector<Stroke> strokes = centre_lines(gaps.outside, rule, context);
+  const CentreLineRule outside{.min_width_mm = narrowest_line_mm(context),
+                               .max_width_mm = widest_mm,
+                               .min_length_mm = context.line_width_mm / 2,
+                               .width = CentreLineWidth::kInscribed};
   // Beads of neighbouring lines overlap with their round sides, and so do these with the walls.
   const double overlap_mm = context.line_width_mm - context.spacing_mm;
-  rule.side_mm = context.spacing_mm / 2;
-  rule.min_width_mm = std::max(rule.min_width_mm - overlap_mm, rule.min_width_mm / 4);
-  rule.max_width_mm -= overlap_mm;
-  for (std::vector<Ring>& band : gaps.between)
-    for (Stroke& stroke : centre_lines(std::move(band), rule, context)) {
-      stroke.width_mm += overlap_mm;
+  CentreLineRule between = outside;
+  between.min_width_mm = std::max(outside.min_width_mm - overlap_mm, outside.min_width_mm / 4);
+  between.max_width_mm -= overlap_mm;
+  std::vector<TakenSides> gaps = wall_gaps(polygons, regions, count, context);
+  std::vector<Stroke> strokes;
+  for (std::size_t wall = 0; wall < gaps.size(); ++wall) {
+    const bool is_first = wall == 0;
+    for (Stroke& stroke :
+         centre_lines(std::move(gaps[wall]), is_first ? outside : between, context)) {
+      if (!is_first) stroke.width_mm += overlap_mm;
       strokes.push_back(std::move(stroke));
     }
+  }
   return strokes;
 }
 
@@ -188,6 +187,13 @@ double shortest_strip_mm(double reach_mm, double near_mm, const PlanContext& con
   const double gain_mm = beside_mm + share * width_mm;
   return gain_mm > 0 ? (ends_mm2 + width_mm * (spacing_mm + width_mm)) / gain_mm
                      : std::numeric_limits<double>::infinity();
+}
+
+/// What of an area is farther than `reach_mm` from what is laid; all of it, as it is, if nothing
+/// is. Most sides of the area are as far as that, and would cross those of what is laid, grown, at
+/// every corner.
+Polygons left_open(const Polygons& area, const Polygons& laid, double reach_mm) {
+  return subtract(area, offset(laid, reach_mm + kSideMm));
 }
 
 }  // namespace

@@ -249,14 +249,13 @@ TEST(GreedyShell, FillingGapsLeavesTheWallsAsTheyAreAndCoversMore) {
   EXPECT_GT(filled, 5);
 }
 
-/// What is farther from the sides of bands between walls than the walls' own places reach.
-Polygons open_between(const WallGaps& gaps) {
-  // Bands in which one wall follows the other are just as wide; offsets are true to 5 um.
+/// What is left between sides beyond what is taken.
+Polygons open_between(const TakenSides& sides) {
+  // Where one wall just follows the other nothing is; offsets are true to 5 um.
   constexpr double kNoiseMm = 0.01;
-  Polygons open;
-  for (const std::vector<Ring>& band : gaps.between)
-    open = unite(open, offset(offset_boundary(band, -kSpacing / 2 - kNoiseMm), kNoiseMm));
-  return open;
+  std::vector<double> distances_mm;
+  for (const double taken_mm : sides.taken_mm) distances_mm.push_back(-taken_mm - kNoiseMm);
+  return offset(offset_boundary(sides.rings, distances_mm), kNoiseMm);
 }
 
 TEST(WallGaps, AreWhatNoWallReaches) {
@@ -265,8 +264,10 @@ TEST(WallGaps, AreWhatNoWallReaches) {
       const PlanContext context = context_for(3);
       const std::vector<Polygons> regions = wall_regions(polygon, context);
       // Offsets are true to 5 um.
-      const WallGaps all = wall_gaps({polygon}, regions, 3, context);
-      const Polygons gaps = without_thin_parts(unite(all.outside, open_between(all)), 0.02);
+      Polygons all;
+      for (const TakenSides& sides : wall_gaps({polygon}, regions, 3, context))
+        all = unite(all, open_between(sides));
+      const Polygons gaps = without_thin_parts(all, 0.02);
       const double slivers_mm2 = 0.001 * perimeter_mm({polygon});
       EXPECT_LE(area_mm2(subtract(gaps, {polygon})), slivers_mm2);
       for (std::size_t wall = 0; wall < regions.size(); ++wall) {
@@ -277,9 +278,9 @@ TEST(WallGaps, AreWhatNoWallReaches) {
       }
     }
   const Polygon square{test::rectangle(0, 0, 10, 10), {}};
-  const WallGaps none =
-      wall_gaps({square}, wall_regions(square, context_for(3)), 3, context_for(3));
-  EXPECT_TRUE(none.outside.empty() && none.between.empty());
+  for (const TakenSides& none :
+       wall_gaps({square}, wall_regions(square, context_for(3)), 3, context_for(3)))
+    EXPECT_TRUE(none.rings.empty());
 }
 
 TEST(WallGaps, LeaveNoRoomForALineBesideThem) {
@@ -289,7 +290,7 @@ TEST(WallGaps, LeaveNoRoomForALineBesideThem) {
     for (const Polygon& polygon : layer.polygons) {
       const PlanContext context = context_for(3);
       const std::vector<Polygons> regions = wall_regions(polygon, context);
-      const WallGaps gaps = wall_gaps({polygon}, regions, 3, context);
+      const std::vector<TakenSides> gaps = wall_gaps({polygon}, regions, 3, context);
       const auto missing = [&](const Polygons& open, const Polygons& laid, const Polygons& gap) {
         found += gap.empty() ? 0 : 1;
         const Polygons all = without_thin_parts(subtract(open, laid), narrowest_line_mm(context));
@@ -302,10 +303,10 @@ TEST(WallGaps, LeaveNoRoomForALineBesideThem) {
       for (std::size_t wall = 0; wall <= regions.size() && wall < 3; ++wall) {
         const Polygons region = wall < regions.size() ? regions[wall] : Polygons{};
         if (wall == 0)
-          missing({polygon}, offset(region, kWidth / 2), gaps.outside);
+          missing({polygon}, offset(region, kWidth / 2), open_between(gaps[wall]));
         else
           missing(offset(regions[wall - 1], -kSpacing / 2), offset(region, kSpacing / 2),
-                  open_between(gaps));
+                  open_between(gaps[wall]));
       }
     }
   EXPECT_GT(found, 20);

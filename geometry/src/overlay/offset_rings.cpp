@@ -33,13 +33,14 @@ GridPoint moved(Vector p, Vector by) {
 /// round at least once is the result.
 class MovedBoundary {
  public:
-  MovedBoundary(double distance, double clean, std::size_t points,
+  MovedBoundary(bool moves_outwards, double clean, std::size_t points,
                 std::pmr::memory_resource* memory)
-      : distance_(distance), clean_(clean), memory_(memory) {
+      : clean_(clean), memory_(memory), small_loops_(moves_outwards, memory) {
     curve_.reserve(points + points / 2);
   }
 
-  void add(std::span<const GridPoint> ring) {
+  void add(std::span<const GridPoint> ring, double distance) {
+    distance_ = distance;
     corners_.clear();
     corners_.reserve(ring.size());
     for (const GridPoint p : ring)
@@ -172,13 +173,13 @@ class MovedBoundary {
 
   static constexpr double kShortestMitre = 0.5;  // 1 + cosine of the turn: a mitre of twice
 
-  double distance_;
+  double distance_ = 0;  // of the ring
   double clean_;
   std::pmr::memory_resource* memory_;
   GridRings curve_{memory_};
   std::pmr::vector<Vector> corners_{memory_};  // of the ring, corner i at the beginning of edge i
   std::pmr::vector<Vector> kept_{memory_};
-  SmallLoops small_loops_{distance_ > 0, memory_};
+  SmallLoops small_loops_;
   std::pmr::vector<DrawnPoint> drawn_{memory_};
   std::pmr::vector<MovedEdge> edges_{memory_};
 };
@@ -301,15 +302,17 @@ class Cleaner {
 
 }  // namespace
 
-std::optional<std::vector<GridPolygon>> offset_rings(const GridRings& rings, double distance,
+std::optional<std::vector<GridPolygon>> offset_rings(const GridRings& rings,
+                                                     std::span<const double> distances,
                                                      double clean) {
+  if (rings.rings() == 0) return std::vector<GridPolygon>{};
   std::pmr::memory_resource* const memory = rings.memory();
   Cleaner smoother(clean, memory), cleaner(clean, memory);
-  MovedBoundary boundary(distance, clean, rings.size(), memory);
+  MovedBoundary boundary(distances.front() > 0, clean, rings.size(), memory);
   for (std::uint32_t i = 0; i < rings.rings(); ++i) {
     std::span<const GridPoint> ring = rings.ring(i);
     if (smoother.clean(ring)) ring = smoother.kept();  // so near, points make mitres that are noise
-    if (!ring.empty()) boundary.add(ring);
+    if (!ring.empty()) boundary.add(ring, distances[i]);
   }
   std::optional<std::vector<GridPolygon>> grown = overlay(boundary.take(), Inside::kFirstPositive);
   if (!grown) return std::nullopt;

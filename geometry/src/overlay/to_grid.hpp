@@ -45,6 +45,8 @@ class ToGrid {
     return true;
   }
 
+  /// So far; rings of fewer than three places are none.
+  [[nodiscard]] std::uint32_t rings() const { return rings_.rings(); }
   [[nodiscard]] GridRings take() { return std::move(rings_); }
 
  private:

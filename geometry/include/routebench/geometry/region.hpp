@@ -39,9 +39,10 @@ enum class Join { kMiter, kRound };
 [[nodiscard]] Polygons offset(const Polygons& polygons, double distance_mm,
                               Join join = Join::kMiter);
 
-/// The same of what directed rings enclose, the inside to their left, that need not be sorted into
-/// polygons.
-[[nodiscard]] Polygons offset_boundary(const std::vector<Ring>& rings, double distance_mm);
+/// The same of what directed rings enclose, the inside to their left, in whatever order. Each of
+/// them moves by its own distance, all outwards or all inwards.
+[[nodiscard]] Polygons offset_boundary(const std::vector<Ring>& rings,
+                                       const std::vector<double>& distances_mm);
 
 /// Whether a ring has room between two parallel lines so far apart: then nothing is left of it when
 /// its boundary moves inwards by half of that, in however many steps. Says no rather than look at

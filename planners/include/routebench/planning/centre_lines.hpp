@@ -20,7 +20,6 @@ struct CentreLineRule {
   double max_width_mm = 0.6;   ///< wider places get a stroke of this width
   double min_length_mm = 0.2;  ///< shorter lines are left out
   double min_dot_mm = 1e9;     ///< parts without a line, but at least so wide, get a dot
-  double side_mm = 0;          ///< taken along every side: all widths are of what is left between
   CentreLineWidth width = CentreLineWidth::kMean;
 };
 
@@ -40,8 +39,13 @@ struct CentreLineRule {
 [[nodiscard]] std::vector<Stroke> centre_lines(const Polygons& thin, const CentreLineRule& rule,
                                                const PlanContext& context);
 
-/// The same of what directed rings enclose, the inside to their left, in whatever order.
-[[nodiscard]] std::vector<Stroke> centre_lines(std::vector<Ring> rings, const CentreLineRule& rule,
+/// The sides of narrow parts along which something is taken already.
+struct TakenSides {
+  std::vector<Ring> rings;       ///< directed, the parts to their left, in whatever order
+  std::vector<double> taken_mm;  ///< along each ring; all widths are of what is left
+};
+
+[[nodiscard]] std::vector<Stroke> centre_lines(TakenSides sides, const CentreLineRule& rule,
                                                const PlanContext& context);
 
 }  // namespace routebench

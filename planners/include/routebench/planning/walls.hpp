@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "routebench/geometry/types.hpp"
+#include "routebench/planning/centre_lines.hpp"
 #include "routebench/planning/planner.hpp"
 
 namespace routebench {
@@ -18,25 +19,17 @@ namespace routebench {
 /// offset is needed to know. Cost   linear.
 [[nodiscard]] double grown_area_mm2(const Polygons& polygons, double distance_mm);
 
-/// What walls leave open.
-struct WallGaps {
-  Polygons outside;  ///< parts that are too narrow for the first wall
-  /// Of each further wall, where it does not follow the one before it: rings round the bands
-  /// between their centre lines, directed, a band to the left. What of a band is farther from its
-  /// sides than the walls' own places reach, half a spacing, is open.
-  std::vector<std::vector<Ring>> between;
-};
-
-/// What `count` walls leave open before and between them. What lies inside the last of them is none
-/// of it.
+/// What `count` walls leave open: of each in turn the sides of what lies between its centre line
+/// and what comes before it, the outline or a wall, and what these two take of it. What lies inside
+/// the last wall is none of it, and nothing is open where a wall just follows what comes before.
 ///
 /// Takes   polygons and their wall_regions, fewer than `count` if no more fit.
-/// Returns polygons, with slivers of a few micrometres among them. Up to the outline a wall's place
-///         is all that its bead reaches.
-/// Cost    linear where nothing is narrow; else an offset and a Boolean operation for the first
-///         wall.
-[[nodiscard]] WallGaps wall_gaps(const Polygons& polygons, const std::vector<Polygons>& regions,
-                                 int count, const PlanContext& context);
+/// Returns sides near places where a wall does not follow, cut off along boxes farther away. A
+///         wall's place is half a spacing wide, but towards the outline all that its bead reaches.
+/// Cost    linear.
+[[nodiscard]] std::vector<TakenSides> wall_gaps(const Polygons& polygons,
+                                                const std::vector<Polygons>& regions, int count,
+                                                const PlanContext& context);
 
 /// Lines along the middle of wall_gaps, each as wide as its gap, from narrowest_line_mm to
 /// widest_mm. Those between walls overlap with them as much as walls do with each other.
