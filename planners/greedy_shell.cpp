@@ -363,7 +363,7 @@ class GreedyShell final : public Planner {
       const bool innermost = wall + 1 == regions.size();
       const bool twice =
           params_.small_twice && innermost && offset(regions[wall], -context.spacing_mm).empty();
-      regions[wall] = where_walled(regions, wall, context);
+      regions[wall] = where_walled(std::move(regions[wall]), wall == 0, context);
       Pool pool;
       const bool another = std::cmp_less(wall + 1, context.perimeters);
       for (const Polygon& part : regions[wall]) add_wall(part, another, twice, context, pool);
@@ -376,14 +376,14 @@ class GreedyShell final : public Planner {
   }
 
   /// A wall's region without what is too narrow for the wall.
-  [[nodiscard]] Polygons where_walled(const std::vector<Polygons>& regions, std::size_t wall,
+  [[nodiscard]] Polygons where_walled(Polygons region, bool is_first,
                                       const PlanContext& context) const {
     const double near_mm = kNearSides * context.spacing_mm;
-    if (params_.thin == Thin::kDrop) return without_thin_parts(regions[wall], near_mm);
+    if (params_.thin == Thin::kDrop) return without_thin_parts(region, near_mm);
     // Where gaps are left, a line would not take the wall's place.
-    if (params_.thin == Thin::kDouble || params_.gaps == Gaps::kLeave) return regions[wall];
-    const double place_mm = wall == 0 ? context.line_width_mm : context.spacing_mm;
-    return without_strips(regions[wall], place_mm / 2, near_mm, context);
+    if (params_.thin == Thin::kDouble || params_.gaps == Gaps::kLeave) return region;
+    const double place_mm = is_first ? context.line_width_mm : context.spacing_mm;
+    return without_strips(std::move(region), place_mm / 2, near_mm, context);
   }
 
   /// Adds the wall round one part of its region. Where another one is asked for inside it and there
@@ -392,9 +392,13 @@ class GreedyShell final : public Planner {
                 Pool& pool) const {
     const double left_mm =
         another && params_.gaps == Gaps::kFill ? left_inside_mm(part, context) : 0;
-    const Polygons centre = left_mm > 0 ? offset({part}, -left_mm / 4) : Polygons{part};
-    for (const Ring& ring : rings_of(centre))
-      pool.add(ring, context.line_width_mm + left_mm / 2, twice);
+    const auto add = [&](const Polygon& centre) {
+      pool.add(centre.outer, context.line_width_mm + left_mm / 2, twice);
+      for (const Ring& hole : centre.holes)
+        pool.add(hole, context.line_width_mm + left_mm / 2, twice);
+    };
+    if (left_mm == 0) return add(part);
+    for (const Polygon& centre : offset({part}, -left_mm / 4)) add(centre);
   }
 
   /// The widest place that no wall is laid in.

@@ -208,15 +208,17 @@ double left_inside_mm(const Polygon& region, const PlanContext& context) {
   return offset({region}, -(context.spacing_mm + line_mm) / 2).empty() ? left_mm : 0;
 }
 
-Polygons without_strips(const Polygons& region, double reach_mm, double near_mm,
+Polygons without_strips(Polygons region, double reach_mm, double near_mm,
                         const PlanContext& context) {
   const double width_mm = near_mm + 2 * kSideMm;
   const double length_mm = kStripShare * shortest_strip_mm(reach_mm, near_mm, context);
   const double slack_mm = context.spacing_mm, margin_mm = kMarginSpacings * context.spacing_mm;
-  Polygons wide, narrow, strips;
-  for (const Polygon& part : region)
-    (has_near_sides(part, width_mm, length_mm) ? narrow : wide).push_back(part);
-  if (narrow.empty()) return region;
+  const auto first_narrow = std::stable_partition(
+      region.begin(), region.end(),
+      [&](const Polygon& part) { return !has_near_sides(part, width_mm, length_mm); });
+  if (first_narrow == region.end()) return region;
+  const Polygons narrow(first_narrow, region.end());
+  Polygons strips;
   const Polygons cores = offset(narrow, -near_mm / 2);
   for (const Box2& box : doubtful_places(cores, narrow, near_mm / 2, slack_mm, margin_mm)) {
     const Polygons laid = clipped(cores, grown(box, margin_mm));
@@ -228,8 +230,9 @@ Polygons without_strips(const Polygons& region, double reach_mm, double near_mm,
       if (is_strip(part, reach_mm, context)) strips.push_back(std::move(part));
   }
   if (strips.empty()) return region;
-  append(subtract(narrow, strips), wide);
-  return wide;
+  region.erase(first_narrow, region.end());
+  append(subtract(narrow, strips), region);
+  return region;
 }
 
 std::vector<Ring> rings_of(const Polygons& polygons) {

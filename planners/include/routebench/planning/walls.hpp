@@ -52,7 +52,7 @@ namespace routebench {
 ///
 /// Takes   what a wall's centre line encloses, and how far the wall reaches beyond its centre line.
 /// Cost    linear where nothing is narrow; else two offsets and two Boolean operations there.
-[[nodiscard]] Polygons without_strips(const Polygons& region, double reach_mm, double near_mm,
+[[nodiscard]] Polygons without_strips(Polygons region, double reach_mm, double near_mm,
                                       const PlanContext& context);
 
 /// All rings of polygons: each outer one followed by its holes.
