@@ -170,6 +170,36 @@ TEST(Region, RepeatedOffsetsLoseNothing) {
   }
 }
 
+TEST(Region, RingsOfABoundaryMoveAsThePolygonsDo) {
+  for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
+    const Polygons polygons = random_polygons(seed);
+    std::vector<Ring> rings;
+    for (const Polygon& polygon : polygons) {
+      rings.insert(rings.begin(), polygon.holes.begin(), polygon.holes.end());
+      rings.push_back(polygon.outer);
+    }
+    for (const double mm : {-0.6, -0.1, 0.3})
+      EXPECT_EQ(offset_boundary(rings, std::vector<double>(rings.size(), mm)), offset(polygons, mm))
+          << seed << ", " << mm;
+  }
+}
+
+TEST(Region, EachRingMovesByItsOwnDistance) {
+  const auto moved = [](Point2 at, double outer_mm, double inner_mm) {
+    const Ring outer = rectangle(at.x, at.y, at.x + 10, at.y + 10);
+    const Ring inner = test::reversed(rectangle(at.x + 3, at.y + 3, at.x + 7, at.y + 7));
+    return offset_boundary({inner, outer}, {inner_mm, outer_mm});
+  };
+  // The second place is beyond what overlays take.
+  for (const Point2 at : {Point2{0, 0}, Point2{2000, -3000}}) {
+    EXPECT_NEAR(area_mm2(moved(at, -1, -0.25)), 64 - 4.5 * 4.5, 1e-3);
+    EXPECT_NEAR(area_mm2(moved(at, 0.5, 1)), 121 - 4, 1e-3);
+    EXPECT_NEAR(area_mm2(moved(at, -0.5, -2.75)), 0, 1e-3);  // the hole has grown over it
+    EXPECT_EQ(moved(at, -1, -0.25).size(), 1U);
+  }
+  EXPECT_TRUE(offset_boundary({}, {}).empty());
+}
+
 TEST(Region, ThinPartsGoAndThickPartsStay) {
   // A 10 mm square with a 0.3 mm wide hair and a 2 mm wide arm.
   const Polygons shape = polygons_from_rings(

@@ -79,6 +79,25 @@ TEST(CentreLines, ARingGivesALoop) {
   EXPECT_NEAR(strokes[0].width_mm, 0.4, 0.02);
 }
 
+TEST(CentreLines, WhatSidesTakeIsLeftOut) {
+  // Between the circles 0.4 mm wide, of which the outer side takes 0.1 mm and the inner one less.
+  const CentreLineRule rule{.max_width_mm = 0.6, .width = CentreLineWidth::kInscribed};
+  for (const double inner_mm : {0.0, 0.05, 0.1}) {
+    const std::vector<Stroke> strokes = centre_lines(
+        TakenSides{{test::circle({5, 5}, 5, 400), test::reversed(test::circle({5, 5}, 4.6, 400))},
+                   {0.1, inner_mm}},
+        rule, PlanContext{});
+    ASSERT_EQ(strokes.size(), 1U);
+    EXPECT_NEAR(strokes[0].width_mm, 0.3 - inner_mm, 0.015);
+    for (const Point2 p : strokes[0].points)
+      EXPECT_NEAR(distance(p, {5, 5}), 4.75 + inner_mm / 2, 0.01);
+  }
+  // Nothing is left.
+  EXPECT_TRUE(
+      centre_lines(TakenSides{{test::rectangle(0, 0, 10, 0.4)}, {0.19}}, rule, PlanContext{})
+          .empty());
+}
+
 TEST(CentreLines, TheArmsOfAForkMeet) {
   // A T whose bars are 0.4 mm wide.
   const Polygons fork{

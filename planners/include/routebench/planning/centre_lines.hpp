@@ -45,6 +45,7 @@ struct TakenSides {
   std::vector<double> taken_mm;  ///< along each ring; all widths are of what is left
 };
 
+/// As above, along the middle of what is left between sides.
 [[nodiscard]] std::vector<Stroke> centre_lines(TakenSides sides, const CentreLineRule& rule,
                                                const PlanContext& context);
 
