@@ -209,7 +209,8 @@ class Cleaner {
       const GridPoint before = ring[previous], here = ring[at], after = ring[next];
       double strays = reach_;
       if (is_low(before, here, after))
-        strays = std::max(links_[previous].strayed, links_[at].strayed) + height(before, here, after);
+        strays =
+            std::max(links_[previous].strayed, links_[at].strayed) + height(before, here, after);
       if (strays < reach_) {
         at = remove(at, strays);
         --size;
