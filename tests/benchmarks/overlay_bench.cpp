@@ -2,6 +2,8 @@
 
 #include <benchmark/benchmark.h>
 
+#include <cstddef>
+#include <cstdint>
 #include <random>
 #include <vector>
 
@@ -26,6 +28,39 @@ void shrink_by_a_line(benchmark::State& state) {
   state.SetComplexityN(state.range(0));
 }
 BENCHMARK(shrink_by_a_line)->Apply(over_points);
+
+/// Outlines of a few points, as lattices and text are made of: so many that none is foreseen.
+constexpr int kFewPointOutlines = 1024;
+
+void over_few_points(benchmark::internal::Benchmark* bench) {
+  bench->RangeMultiplier(2)->Range(4, 64)->Unit(benchmark::kMicrosecond);
+}
+
+std::vector<Polygons> few_point_outlines(int points, std::uint64_t first_seed) {
+  std::vector<Polygons> outlines;
+  for (int i = 0; i < kFewPointOutlines; ++i)
+    outlines.push_back(polygons_from_rings(
+        {test::star(first_seed + static_cast<std::uint64_t>(i), points, {50, 50}, 0.6, 1.2)},
+        FillRule::kNonZero));
+  return outlines;
+}
+
+void shrink_few_points(benchmark::State& state) {
+  const auto outlines = few_point_outlines(static_cast<int>(state.range(0)), 1);
+  for (auto _ : state)
+    for (const Polygons& outline : outlines) benchmark::DoNotOptimize(offset(outline, -0.2));
+  state.SetItemsProcessed(state.iterations() * kFewPointOutlines);
+}
+BENCHMARK(shrink_few_points)->Apply(over_few_points);
+
+void subtract_few_points(benchmark::State& state) {
+  const auto a = few_point_outlines(static_cast<int>(state.range(0)), 1);
+  const auto b = few_point_outlines(static_cast<int>(state.range(0)), kFewPointOutlines + 1);
+  for (auto _ : state)
+    for (std::size_t i = 0; i < a.size(); ++i) benchmark::DoNotOptimize(subtract(a[i], b[i]));
+  state.SetItemsProcessed(state.iterations() * kFewPointOutlines);
+}
+BENCHMARK(subtract_few_points)->Apply(over_few_points);
 
 /// A large disc of very short edges.
 void shrink_a_disc(benchmark::State& state) {
@@ -68,6 +103,29 @@ void unite_nearly_equal(benchmark::State& state) {
 BENCHMARK(unite_nearly_equal)
     ->RangeMultiplier(2)
     ->Range(2, 16)
+    ->Unit(benchmark::kMicrosecond)
+    ->Complexity();
+
+/// Two combs: n^2 places where long sides cross.
+void intersect_combs(benchmark::State& state) {
+  const auto comb = [&](bool turned) {
+    Ring ring;
+    const auto length = static_cast<double>(2 * state.range(0));
+    for (int i = 0; i < state.range(0); ++i)
+      ring.insert(ring.end(),
+                  {{2.0 * i, -1}, {2.0 * i, length}, {2.0 * i + 1, length}, {2.0 * i + 1, -1}});
+    ring.insert(ring.end(), {{length, -1}, {length, -2}, {0, -2}});
+    if (turned)
+      for (Point2& p : ring) p = {p.y, p.x};
+    return polygons_from_rings({ring}, FillRule::kNonZero);
+  };
+  const Polygons upright = comb(false), level = comb(true);
+  for (auto _ : state) benchmark::DoNotOptimize(intersect(upright, level));
+  state.SetComplexityN(state.range(0) * state.range(0));
+}
+BENCHMARK(intersect_combs)
+    ->RangeMultiplier(2)
+    ->Range(4, 128)
     ->Unit(benchmark::kMicrosecond)
     ->Complexity();
 

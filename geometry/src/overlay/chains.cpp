@@ -172,9 +172,7 @@ void ChainGraph::spread(std::uint32_t node, std::uint32_t place, Winding before,
     std::uint32_t node, place;
     Winding before;
   };
-  std::pmr::vector<Visit> open(memory_);
-  open.reserve(chains_.size() + 1);
-  open.push_back({node, place, before});
+  std::pmr::vector<Visit> open({{node, place, before}}, memory_);
   while (!open.empty()) {
     const Visit visit = open.back();
     open.pop_back();

@@ -194,23 +194,24 @@ class Cleaner {
 
   /// True if a ring loses points; what is left of it, maybe nothing, is kept() then.
   bool clean(std::span<const GridPoint> ring) {
-    const std::size_t n = ring.size();
+    const auto n = static_cast<std::uint32_t>(ring.size());
     moved_.clear();
-    std::size_t at = first_to_go(ring);
+    std::uint32_t at = first_to_go(ring);
     if (at == n) {
       moved_.resize(n, 0);
       return false;
     }
     links_.resize(n);
-    for (std::size_t i = 0; i < n; ++i)
+    for (std::uint32_t i = 0; i < n; ++i)
       links_[i] = {i + 1 < n ? i + 1 : 0, i > 0 ? i - 1 : n - 1, 0, i < at};
-    std::size_t size = n;
+    std::uint32_t size = n;
     while (size > 2 && !links_[at].settled) {
-      const auto [next, previous, strayed, settled] = links_[at];
+      const std::uint32_t next = links_[at].next, previous = links_[at].previous;
       const GridPoint before = ring[previous], here = ring[at], after = ring[next];
       double strays = reach_;
       if (is_low(before, here, after))
-        strays = std::max(links_[previous].strayed, strayed) + height(before, here, after);
+        strays =
+            std::max(links_[previous].strayed, links_[at].strayed) + height(before, here, after);
       if (strays < reach_) {
         at = remove(at, strays);
         --size;
@@ -225,7 +226,7 @@ class Cleaner {
     }
     kept_.clear();
     if (size < 3) return true;
-    for (std::size_t i = 0; i < size; ++i, at = links_[at].next) {
+    for (std::uint32_t i = 0; i < size; ++i, at = links_[at].next) {
       kept_.push_back(ring[at]);
       moved_.push_back(links_[at].next == (at + 1 < n ? at + 1 : 0) ? 0 : 1);
     }
@@ -239,15 +240,15 @@ class Cleaner {
 
  private:
   struct Link {
-    std::size_t next, previous;
+    std::uint32_t next, previous;
     double strayed;  ///< the edge that begins here
     bool settled;
   };
 
   /// The first point to take away; as many as there are if all may stay, as mostly they do.
-  [[nodiscard]] std::size_t first_to_go(std::span<const GridPoint> ring) const {
-    const std::size_t n = ring.size();
-    for (std::size_t i = 0; i < n && n > 2; ++i) {
+  [[nodiscard]] std::uint32_t first_to_go(std::span<const GridPoint> ring) const {
+    const auto n = static_cast<std::uint32_t>(ring.size());
+    for (std::uint32_t i = 0; i < n && n > 2; ++i) {
       const GridPoint before = ring[i > 0 ? i - 1 : n - 1], after = ring[i + 1 < n ? i + 1 : 0];
       if (are_near(before, after)) return i;
       if (is_low(before, ring[i], after) && height(before, ring[i], after) < reach_) return i;
@@ -257,8 +258,8 @@ class Cleaner {
 
   /// Takes a point away; the edge that then stands for it strays so far. Returns the point before,
   /// which has to be looked at again.
-  std::size_t remove(std::size_t at, double strays) {
-    const std::size_t next = links_[at].next, previous = links_[at].previous;
+  std::uint32_t remove(std::uint32_t at, double strays) {
+    const std::uint32_t next = links_[at].next, previous = links_[at].previous;
     links_[previous].next = next;
     links_[next].previous = previous;
     links_[previous].settled = false;
