@@ -4,8 +4,11 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <memory_resource>
 #include <optional>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include "clipper_paths.hpp"
 #include "overlay/offset_rings.hpp"
