@@ -118,7 +118,8 @@ class StrokeCutter {
     Point2 deepest = core.outer.front();
     double radius_mm = 0;
     for (const ChordalAxis::Chord& chord : chordal_axis(core, extent_mm / kDotSamples).chords) {
-      const double mm = room_.radius_mm(chord.middle, extent_mm).value_or(0);
+      const double mm =
+          room_.radius_mm(chord.middle, rule_.max_width_mm).value_or(rule_.max_width_mm);
       if (mm <= radius_mm) continue;
       radius_mm = mm;
       deepest = chord.middle;
@@ -302,8 +303,9 @@ std::vector<Stroke> centre_lines(TakenSides sides, const CentreLineRule& rule,
     const Box2 box = bounding_box({core});
     const double extent_mm = distance(box.lower, box.upper) + 2 * inwards_mm;
     if (extent_mm < std::min(rule.min_length_mm, rule.min_dot_mm)) continue;
-    // Beads are as wide as the sides let them be, not those of the core.
-    const Room room(sides, box, std::max(rule.max_width_mm, extent_mm));
+    // Beads are as wide as the sides let them be, not those of the core, and may reach beyond it.
+    const Point2 beyond{rule.max_width_mm, rule.max_width_mm};
+    const Room room(sides, {box.lower - beyond, box.upper + beyond}, rule.max_width_mm);
     StrokeCutter cutter(rule, room, origin, strokes);
     const std::size_t before = strokes.size();
     if (!cutter.cut_compact(core, inwards_mm))
