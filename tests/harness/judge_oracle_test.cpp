@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "judge/beside.hpp"
 #include "judge/bit_plane.hpp"
 #include "judge/capsule.hpp"
 #include "judge/cell_field.hpp"
@@ -337,6 +338,48 @@ TEST(JudgeOracle, OutlineCoveredAgreesWithEveryStroke) {
     }
     EXPECT_NEAR(*judging::outline_covered(polygons, runs, 0.45), reached / all, 0.003);
   }
+}
+
+TEST(JudgeOracle, OnlyOutlinesInReachAreSurelyReached) {
+  // Walls, as they should be and with the end of one cut off: what is said to be in reach must be
+  // so at every point; what is cut off is seldom made up for.
+  std::mt19937_64 random(11);
+  int sure = 0;
+  int left = 0;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    const Polygons polygons = test::random_polygons(seed, 5, 15);
+    const Route walls = test::loops(offset(polygons, -0.03), 0.45);
+    for (const bool whole : {true, false}) {
+      Route route = walls;
+      if (!whole) {
+        Stroke& stroke = route.strokes[random() % route.strokes.size()];
+        stroke.points.resize(1 + random() % stroke.points.size());
+      }
+      const std::vector<judging::Run> runs = judging::runs_of(route, 0.01);
+      if (!judging::is_surely_reached(polygons, runs, 0.45)) {
+        ++left;
+        continue;
+      }
+      ++sure;
+      const auto check_ring = [&](const Ring& ring) {
+        for (std::size_t i = 0; i < ring.size(); ++i)
+          for (double share = 0; share < 1; share += 1.0 / 64) {
+            const Point2 p = lerp(ring[i], ring[(i + 1) % ring.size()], share);
+            double nearest = std::numeric_limits<double>::infinity();
+            judging::visit_beads(runs, [&](Point2 a, Point2 b, double) {
+              nearest = std::min(nearest, distance(p, nearest_on_segment(p, a, b)));
+            });
+            EXPECT_LE(nearest, 0.45) << seed;
+          }
+      };
+      for (const Polygon& polygon : polygons) {
+        check_ring(polygon.outer);
+        for (const Ring& hole : polygon.holes) check_ring(hole);
+      }
+    }
+  }
+  EXPECT_GT(sure, 10);
+  EXPECT_GT(left, 10);
 }
 
 TEST(JudgeOracle, AveragesAgreeWithTheirDefinition) {
