@@ -43,20 +43,34 @@ void add_passes(BitPlane& once, BitPlane& twice, const Run& run, const Task& tas
         once.add_counting(row, bead.left, bead.right, twice);
         return;
       }
-      // A sample on the rim of the disc belongs to it.
-      once.add_counting(row, bead.left, static_cast<double>(rounded_up(start.left) - 1), twice);
-      once.add_counting(row, static_cast<double>(rounded_down(start.right) + 1), bead.right, twice);
+      // A sample on the rim of the disc belongs to it. Mostly one end of the row is on the rim.
+      if (bead.left < start.left)
+        once.add_counting(row, bead.left, static_cast<double>(rounded_up(start.left) - 1), twice);
+      if (bead.right > start.right)
+        once.add_counting(row, static_cast<double>(rounded_down(start.right) + 1), bead.right,
+                          twice);
     };
-    visit_capsule_rows(from, grid.to_steps(run.points[i + 1]), radius, grid.rows(), add);
+    CapsuleRows rows(from, grid.to_steps(run.points[i + 1]), radius);
+    if (goes_on) rows.leave_tip(from);
+    rows.visit(grid.rows(), add);
   }
 }
 
 /// Samples of the walls and dense parts that beads are over.
 std::size_t samples_under_beads(const LayerSamples& samples, const std::vector<Run>& runs) {
-  BitPlane beads(samples.grid);
-  visit_beads(runs, [&beads](Point2 a, Point2 b, double width_mm) {
-    add_capsule(beads, a, b, width_mm / 2);
-  });
+  const SampleGrid& grid = samples.grid;
+  BitPlane beads(grid);
+  for (const Run& run : runs)
+    for (std::size_t i = 0; i < run.widths_mm.size(); ++i) {
+      const double width_mm = run.widths_mm[i];
+      if (width_mm <= 0) continue;
+      const Point2 from = grid.to_steps(run.points[i]);
+      CapsuleRows rows(from, grid.to_steps(run.points[i + 1]), grid.to_steps(width_mm / 2));
+      // The bead before ends in the same disc.
+      if (i > 0 && run.widths_mm[i - 1] == width_mm) rows.leave_tip(from);
+      rows.visit(grid.rows(),
+                 [&beads](std::size_t row, Span bead) { beads.add(row, bead.left, bead.right); });
+    }
   return samples.outline.count([](Word, Word s, Word b) { return ~s & b; }, samples.sparse, beads);
 }
 
