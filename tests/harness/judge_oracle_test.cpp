@@ -205,6 +205,63 @@ TEST(JudgeOracle, CapsuleRowsHoldExactlyThePointsInReach) {
   }
 }
 
+TEST(JudgeOracle, LongCapsulesHaveStraightSides) {
+  // However long, steep, nearly level or far away: no error adds up along the sides.
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> unit(0, 1);
+  std::size_t sides = 0;
+  for (int round = 0; round < 400; ++round) {
+    const double scale = std::pow(10.0, 1 + round % 7);
+    const Point2 a{scale * unit(random), 4000 * unit(random)};
+    const Point2 b{scale * unit(random), round % 3 == 0 ? a.y + unit(random) : 4000 * unit(random)};
+    const double radius = 2 + 6 * unit(random);
+    const Point2 run = b - a;
+    judging::visit_capsule_rows(a, b, radius, 4000, [&](std::size_t row, judging::Span span) {
+      const double share = (static_cast<double>(row) - a.y) / run.y;
+      const double half_width = radius * distance(a, b) / std::abs(run.y);
+      const double rise = radius * std::abs(run.x) / distance(a, b) / std::abs(run.y);
+      if (share < rise || share > 1 - rise) return;  // on an arc
+      const Point2 middle = lerp(a, b, share);
+      const double off = 1e-12 * (scale + half_width) + 1e-9;
+      EXPECT_GE(static_cast<double>(span.left), middle.x - half_width - off);
+      EXPECT_LT(static_cast<double>(span.left), middle.x - half_width + 1 + off);
+      EXPECT_LE(static_cast<double>(span.right), middle.x + half_width + off);
+      EXPECT_GT(static_cast<double>(span.right), middle.x + half_width - 1 - off);
+      ++sides;
+    });
+  }
+  EXPECT_GT(sides, 100000U);
+}
+
+TEST(JudgeOracle, ATipIsInTheDiscThere) {
+  std::mt19937_64 random(9);
+  std::uniform_real_distribution<double> place(5, 35);
+  for (int round = 0; round < 200; ++round) {
+    const Point2 a{place(random), place(random)};
+    Point2 b{place(random), place(random)};
+    if (round % 4 == 1) b.x = a.x;
+    if (round % 4 == 2) b.y = a.y;
+    if (round % 4 == 3) b = lerp(a, b, 0.05);
+    const double radius = 0.2 + 5 * place(random) / 35;
+    std::vector<judging::Span> all(40);
+    std::vector<judging::Span> rest(40);
+    judging::CapsuleRows rows(a, b, radius);
+    rows.visit(40, [&](std::size_t row, judging::Span span) { all[row] = span; });
+    rows.leave_tip(a);
+    rows.visit(40, [&](std::size_t row, judging::Span span) { rest[row] = span; });
+    for (std::size_t row = 0; row < all.size(); ++row) {
+      const double dy = static_cast<double>(row) - a.y;
+      const judging::Span left = rest[row].empty() ? judging::disc_row(a.x, dy, radius) : rest[row];
+      if (all[row].empty()) {
+        EXPECT_TRUE(left.empty());
+      } else {
+        EXPECT_EQ(left.left, all[row].left);
+        EXPECT_EQ(left.right, all[row].right);
+      }
+    }
+  }
+}
+
 TEST(JudgeOracle, CapsulesTakeAwayWhatTheyWouldAdd) {
   // With a look now and then at what is left, which must not be trusted for more than it says.
   const Polygons polygons = test::random_polygons(3, 6, 10);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <utility>
 
@@ -13,10 +14,11 @@
 
 namespace routebench::judging {
 
-/// From `left` to `right`, in steps of a sample grid; nothing if left > right.
+/// Columns of a sample grid from `left` to `right`, or none if left > right. Those beyond the grid
+/// count, too.
 struct Span {
-  double left = std::numeric_limits<double>::infinity();
-  double right = -std::numeric_limits<double>::infinity();
+  std::int64_t left = std::numeric_limits<std::int64_t>::max();
+  std::int64_t right = std::numeric_limits<std::int64_t>::min();
 
   [[nodiscard]] bool empty() const noexcept { return left > right; }
 };
@@ -26,7 +28,7 @@ struct Span {
   const double square = radius * radius - dy * dy;
   if (square < 0) return {};
   const double half = std::sqrt(square);
-  return {centre_x - half, centre_x + half};
+  return {rounded_up(centre_x - half), rounded_down(centre_x + half)};
 }
 
 /// The boundary of a capsule by rows. A capsule is convex, hence one span a row, and upwards each
@@ -75,16 +77,46 @@ class CapsuleRows {
     const double first_between = std::max(left_side_.begin, right_side_.begin);
     const double last_between = std::min(left_side_.end, right_side_.end);
     for (const double end = std::min(first_between, last + 1); y < end; y += 1) visit(row++, at(y));
-    for (const double end = std::min(last_between, last); y <= end; y += 1)
-      visit(row++, between(y));
+    if (const double end = std::min(last_between, last); y <= end) {
+      const std::size_t first_row = row;
+      row = static_cast<std::size_t>(rounded_down(end)) + 1;
+      visit_between(first_row, row, visit);
+      y = static_cast<double>(row);
+    }
     for (; y <= last; y += 1) visit(row++, at(y));
   }
 
  private:
-  /// The row at such a height.
-  [[nodiscard]] Span between(double y) const noexcept {
-    const double middle = low_.x + slope_ * (y - low_.y);
-    return {middle - half_width_, middle + half_width_};
+  /// Visits rows at which both ends are on straight sides. They move by as much from row to row: in
+  /// whole numbers, as fractions of a step that are far below what tells samples apart, this takes
+  /// an addition an end. Now and then they begin anew, lest errors add up.
+  template <typename Visit>
+  void visit_between(std::size_t row, std::size_t end_row, Visit& visit) const {
+    constexpr std::size_t kRowsAtOnce = 64;
+    constexpr int kFractionBits = 40;
+    constexpr std::int64_t kStep = std::int64_t{1} << kFractionBits;
+    constexpr double kFurthest = 1 << 21;  // what fits in, and twice that
+    const auto fixed = [](double steps) {
+      return static_cast<std::int64_t>(steps * static_cast<double>(kStep));
+    };
+    const bool fits = std::abs(low_.x) + half_width_ < kFurthest &&
+                      std::abs(high_.x) + half_width_ < kFurthest &&
+                      std::abs(slope_) * static_cast<double>(kRowsAtOnce) < kFurthest;
+    const std::int64_t slope = fits ? fixed(slope_) : 0;
+    while (row < end_row) {
+      const double middle = low_.x + slope_ * (static_cast<double>(row) - low_.y);
+      if (!fits) {
+        visit(row++, Span{rounded_up(middle - half_width_), rounded_down(middle + half_width_)});
+        continue;
+      }
+      std::int64_t left = fixed(middle - half_width_) + kStep - 1;  // down from here is up
+      std::int64_t right = fixed(middle + half_width_);
+      for (const std::size_t end = std::min(row + kRowsAtOnce, end_row); row < end; ++row) {
+        visit(row, Span{left >> kFractionBits, right >> kFractionBits});
+        left += slope;
+        right += slope;
+      }
+    }
   }
   /// The row at any height that the capsule meets.
   [[nodiscard]] Span at(double y) const noexcept {
@@ -98,7 +130,7 @@ class CapsuleRows {
       if (y > side.end) return high_.x + sign * high_chord;
       return low_.x + slope_ * (y - low_.y) + sign * half_width_;
     };
-    return {end(-1, left_side_), end(1, right_side_)};
+    return {rounded_up(end(-1, left_side_)), rounded_down(end(1, right_side_))};
   }
 
   /// Lower than this a segment is taken as level: no row but one is met by its sides.

@@ -1,7 +1,7 @@
 #include "judge/coverage.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <cstdint>
 #include <utility>
 
 #include "judge/bit_plane.hpp"
@@ -36,19 +36,20 @@ void add_passes(BitPlane& once, BitPlane& twice, const Run& run, const Task& tas
     const bool goes_on = i > 0 || run.loop;
     const Point2 from = grid.to_steps(run.points[i]);
     const double radius = grid.to_steps(task.mean_width_mm(run.widths_mm[i]) / 2);
+    const std::int64_t first_start = rounded_up(from.y - radius);
+    const std::int64_t last_start = goes_on ? rounded_down(from.y + radius) : first_start - 1;
     const auto add = [&](std::size_t row, Span bead) {
-      const double dy = static_cast<double>(row) - from.y;
-      const Span start = goes_on && std::abs(dy) <= radius ? disc_row(from.x, dy, radius) : Span{};
+      const auto signed_row = static_cast<std::int64_t>(row);
+      const Span start = first_start <= signed_row && signed_row <= last_start
+                             ? disc_row(from.x, static_cast<double>(signed_row) - from.y, radius)
+                             : Span{};
       if (start.empty()) {
         once.add_counting(row, bead.left, bead.right, twice);
         return;
       }
       // A sample on the rim of the disc belongs to it. Mostly one end of the row is on the rim.
-      if (bead.left < start.left)
-        once.add_counting(row, bead.left, static_cast<double>(rounded_up(start.left) - 1), twice);
-      if (bead.right > start.right)
-        once.add_counting(row, static_cast<double>(rounded_down(start.right) + 1), bead.right,
-                          twice);
+      if (bead.left < start.left) once.add_counting(row, bead.left, start.left - 1, twice);
+      if (bead.right > start.right) once.add_counting(row, start.right + 1, bead.right, twice);
     };
     CapsuleRows rows(from, grid.to_steps(run.points[i + 1]), radius);
     if (goes_on) rows.leave_tip(from);

@@ -1,6 +1,7 @@
 #include "judge/reach.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <numbers>
 #include <optional>
 #include <utility>
@@ -92,8 +93,9 @@ bool is_reached_by_squares(const SampleGrid& grid, const Polygons& sparse,
     for (std::size_t i = 0; i < ring.size(); ++i)
       visit_cell_rows(to_squares(ring[i == 0 ? ring.size() - 1 : i - 1]), to_squares(ring[i]),
                       kRounding, squares.rows(), [&](std::size_t row, double left, double right) {
-                        met.add(row, static_cast<double>(nearest_cell(left, squares.columns())),
-                                static_cast<double>(nearest_cell(right, squares.columns())));
+                        met.add(row,
+                                static_cast<std::int64_t>(nearest_cell(left, squares.columns())),
+                                static_cast<std::int64_t>(nearest_cell(right, squares.columns())));
                       });
   };
   for (const Polygon& polygon : sparse) {
