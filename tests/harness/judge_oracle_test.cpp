@@ -233,6 +233,20 @@ TEST(JudgeOracle, LongCapsulesHaveStraightSides) {
   EXPECT_GT(sides, 100000U);
 }
 
+TEST(JudgeOracle, CapsulesBeyondAllMeasureCoverTheirRows) {
+  constexpr double kFar = 2e10;  // steps in 1e9 mm
+  for (const double rise : {0.0, 1e-10, 1e-6, 1.0, 100.0, kFar}) {
+    int rows = 0;
+    judging::visit_capsule_rows({-kFar, 50.5 - rise / 2}, {kFar, 50.5 + rise / 2}, kFar / 2, 101,
+                                [&](std::size_t, judging::Span span) {
+                                  EXPECT_LE(span.left, 0) << rise;
+                                  EXPECT_GE(span.right, 4000000) << rise;
+                                  ++rows;
+                                });
+    EXPECT_EQ(rows, 101) << rise;
+  }
+}
+
 TEST(JudgeOracle, ATipIsInTheDiscThere) {
   std::mt19937_64 random(9);
   std::uniform_real_distribution<double> place(5, 35);

@@ -27,7 +27,7 @@ struct Segment {
 class CentreLines {
  public:
   CentreLines(const std::vector<Run>& runs, const Box2& box, double reach_mm)
-      : reach_mm_(reach_mm - kSurelyMm), lower_(box.lower) {
+      : reach_mm_(std::max(reach_mm - kSurelyMm, 0.0)), lower_(box.lower) {
     visit_beads(runs, [this](Point2 a, Point2 b, double) { lines_.push_back({a, b}); });
     const Point2 size = box.upper - box.lower;
     const double cell_mm = std::max({4 * reach_mm, std::sqrt(size.x * size.y / kMaxCells),

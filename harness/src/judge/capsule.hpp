@@ -23,12 +23,20 @@ struct Span {
   [[nodiscard]] bool empty() const noexcept { return left > right; }
 };
 
+/// The columns from one place to another, in steps: however far away, for what is all but level may
+/// meet a row anywhere.
+[[nodiscard]] inline Span span_between(double left, double right) noexcept {
+  constexpr double kFurthest = 1e18;
+  return {rounded_up(std::clamp(left, -kFurthest, kFurthest)),
+          rounded_down(std::clamp(right, -kFurthest, kFurthest))};
+}
+
 /// The row at height dy over the centre of a disc.
 [[nodiscard]] inline Span disc_row(double centre_x, double dy, double radius) noexcept {
   const double square = radius * radius - dy * dy;
   if (square < 0) return {};
   const double half = std::sqrt(square);
-  return {rounded_up(centre_x - half), rounded_down(centre_x + half)};
+  return span_between(centre_x - half, centre_x + half);
 }
 
 /// The boundary of a capsule by rows. A capsule is convex, hence one span a row, and upwards each
@@ -106,7 +114,7 @@ class CapsuleRows {
     while (row < end_row) {
       const double middle = low_.x + slope_ * (static_cast<double>(row) - low_.y);
       if (!fits) {
-        visit(row++, Span{rounded_up(middle - half_width_), rounded_down(middle + half_width_)});
+        visit(row++, span_between(middle - half_width_, middle + half_width_));
         continue;
       }
       std::int64_t left = fixed(middle - half_width_) + kStep - 1;  // down from here is up
@@ -130,7 +138,7 @@ class CapsuleRows {
       if (y > side.end) return high_.x + sign * high_chord;
       return low_.x + slope_ * (y - low_.y) + sign * half_width_;
     };
-    return {rounded_up(end(-1, left_side_)), rounded_down(end(1, right_side_))};
+    return span_between(end(-1, left_side_), end(1, right_side_));
   }
 
   /// Lower than this a segment is taken as level: no row but one is met by its sides.
