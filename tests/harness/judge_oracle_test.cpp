@@ -11,16 +11,13 @@
 #include <span>
 #include <vector>
 
-#include "judge/bit_plane.hpp"
-#include "judge/capsule.hpp"
+#include "judge/beside.hpp"
 #include "judge/cell_field.hpp"
 #include "judge/coverage.hpp"
 #include "judge/layer_samples.hpp"
 #include "judge/outline.hpp"
 #include "judge/reach.hpp"
 #include "judge/run.hpp"
-#include "judge/sample_grid.hpp"
-#include "judge/samples_left.hpp"
 #include "judge/strays.hpp"
 #include "random_polygons.hpp"
 #include "routebench/geometry/grid.hpp"
@@ -169,98 +166,6 @@ TEST(JudgeOracle, DoubledAgreesWithCountingPassesAtPoints) {
   }
 }
 
-TEST(JudgeOracle, CapsuleRowsHoldExactlyThePointsInReach) {
-  std::mt19937_64 random(3);
-  std::uniform_real_distribution<double> place(-5, 45);
-  std::uniform_real_distribution<double> size(0.2, 12);
-  for (int round = 0; round < 200; ++round) {
-    Point2 a{place(random), place(random)};
-    Point2 b{place(random), place(random)};
-    if (round % 5 == 1) b.x = a.x;
-    if (round % 5 == 2) b.y = a.y;
-    if (round % 5 == 3) b = a;
-    if (round % 5 == 4) b = a + 1e-9 * (b - a);
-    const double radius = size(random);
-    std::vector<judging::Span> rows(40);
-    std::size_t next = 0;
-    judging::visit_capsule_rows(a, b, radius, rows.size(),
-                                [&](std::size_t row, judging::Span span) {
-                                  EXPECT_GE(row, next);  // each once, upwards
-                                  next = row + 1;
-                                  rows.at(row) = span;
-                                });
-    for (std::size_t row = 0; row < rows.size(); ++row)
-      for (int x = -20; x < 60; ++x) {
-        const Point2 p{static_cast<double>(x), static_cast<double>(row)};
-        const double away = distance(p, nearest_on_segment(p, a, b));
-        if (std::abs(away - radius) > 1e-6) {
-          EXPECT_EQ(rows[row].left <= x && x <= rows[row].right, away < radius);
-        }
-        if (std::abs(distance(p, a) - radius) > 1e-6) {
-          const judging::Span disc = judging::disc_row(a.x, p.y - a.y, radius);
-          EXPECT_EQ(disc.left <= x && x <= disc.right, distance(p, a) < radius);
-        }
-      }
-  }
-}
-
-TEST(JudgeOracle, CapsulesTakeAwayWhatTheyWouldAdd) {
-  // With a look now and then at what is left, which must not be trusted for more than it says.
-  const Polygons polygons = test::random_polygons(3, 6, 10);
-  const judging::SampleGrid grid(polygons, 0.5, 0.05, 1e6);
-  const judging::BitPlane all(grid, polygons);
-  std::mt19937_64 random(7);
-  const Box2 box = bounding_box(polygons);
-  std::uniform_real_distribution<double> x(box.lower.x, box.upper.x);
-  std::uniform_real_distribution<double> y(box.lower.y, box.upper.y);
-  constexpr int kEnoughForAll = 20000;
-  using Word = judging::BitPlane::Word;
-  for (const int count : {1, 300, kEnoughForAll}) {
-    judging::BitPlane added(grid);
-    judging::SamplesLeft left(judging::BitPlane(all, [](Word p) { return p; }));
-    for (int i = 0; i < count; ++i) {
-      const Point2 a{x(random), y(random)};
-      const Point2 b = lerp(a, {x(random), y(random)}, 0.05);
-      judging::visit_capsule_rows(
-          grid.to_steps(a), grid.to_steps(b), grid.to_steps(0.4), grid.rows(),
-          [&](std::size_t row, judging::Span span) { added.add(row, span.left, span.right); });
-      left.remove(a, b, 0.4);
-    }
-    EXPECT_EQ(left.count(), all.count([](Word p, Word q) { return p & ~q; }, added)) << count;
-    EXPECT_EQ(left.count() == 0, count == kEnoughForAll);
-  }
-}
-
-TEST(JudgeOracle, PlanesHoldExactlyThePointsInside) {
-  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-    const Polygons polygons = test::random_polygons(seed, 6, 10);
-    const EdgeGrid edges(polygons);
-    const judging::SampleGrid grid(polygons, 0.5, 0.13, 1e6);
-    const judging::BitPlane plane(grid, polygons);
-    std::size_t inside = 0;
-    std::mt19937_64 random(seed);
-    const Box2 box = bounding_box(polygons);
-    std::uniform_real_distribution<double> x(box.lower.x, box.upper.x);
-    std::uniform_real_distribution<double> y(box.lower.y, box.upper.y);
-    for (int i = 0; i < 2000; ++i) {
-      // The sample nearest to a random point, if no boundary runs between the two.
-      const Point2 p{x(random), y(random)};
-      const Point2 step = grid.to_steps(p);
-      if (edges.distance_to_edge_mm(p, 0.2) || step.x < 0 || step.y < 0 ||
-          step.x >= static_cast<double>(grid.columns() - 1) ||
-          step.y >= static_cast<double>(grid.rows() - 1))
-        continue;
-      const bool set = plane.test(static_cast<std::size_t>(std::round(step.x)),
-                                  static_cast<std::size_t>(std::round(step.y)));
-      EXPECT_EQ(set, edges.contains(p));
-      inside += set ? 1 : 0;
-    }
-    EXPECT_GT(inside, 100U);
-    EXPECT_NEAR(static_cast<double>(plane.count()) * grid.sample_mm2(), area_mm2(polygons),
-                0.01 * area_mm2(polygons));
-  }
-}
-
 TEST(JudgeOracle, CrossingsAgreeWithEveryEdge) {
   const Task task = dense_task();
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
@@ -339,6 +244,48 @@ TEST(JudgeOracle, OutlineCoveredAgreesWithEveryStroke) {
   }
 }
 
+TEST(JudgeOracle, OnlyOutlinesInReachAreSurelyReached) {
+  // Walls, as they should be and with the end of one cut off: what is said to be in reach must be
+  // so at every point; what is cut off is seldom made up for.
+  std::mt19937_64 random(11);
+  int sure = 0;
+  int left = 0;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    const Polygons polygons = test::random_polygons(seed, 5, 15);
+    const Route walls = test::loops(offset(polygons, -0.03), 0.45);
+    for (const bool whole : {true, false}) {
+      Route route = walls;
+      if (!whole) {
+        Stroke& stroke = route.strokes[random() % route.strokes.size()];
+        stroke.points.resize(1 + random() % stroke.points.size());
+      }
+      const std::vector<judging::Run> runs = judging::runs_of(route, 0.01);
+      if (!judging::is_surely_reached(polygons, runs, 0.45)) {
+        ++left;
+        continue;
+      }
+      ++sure;
+      const auto check_ring = [&](const Ring& ring) {
+        for (std::size_t i = 0; i < ring.size(); ++i)
+          for (double share = 0; share < 1; share += 1.0 / 64) {
+            const Point2 p = lerp(ring[i], ring[(i + 1) % ring.size()], share);
+            double nearest = std::numeric_limits<double>::infinity();
+            judging::visit_beads(runs, [&](Point2 a, Point2 b, double) {
+              nearest = std::min(nearest, distance(p, nearest_on_segment(p, a, b)));
+            });
+            EXPECT_LE(nearest, 0.45) << seed;
+          }
+      };
+      for (const Polygon& polygon : polygons) {
+        check_ring(polygon.outer);
+        for (const Ring& hole : polygon.holes) check_ring(hole);
+      }
+    }
+  }
+  EXPECT_GT(sure, 10);
+  EXPECT_GT(left, 10);
+}
+
 TEST(JudgeOracle, AveragesAgreeWithTheirDefinition) {
   std::mt19937_64 random(11);
   for (const std::size_t reach : {1U, 2U, 3U, 5U, 40U}) {
@@ -374,26 +321,6 @@ TEST(JudgeOracle, AveragesAgreeWithTheirDefinition) {
         EXPECT_NEAR(static_cast<double>(row[c - wanted[r].first]), mean, 1e-4);
       }
     }
-  }
-}
-
-TEST(JudgeOracle, PlanesBeginEmptyWhateverThoseBeforeHeld) {
-  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
-    const Polygons polygons = test::random_polygons(seed, 6, 10);
-    // Without a margin: rows that are inside up to their ends.
-    const judging::SampleGrid grid(polygons, 0, 0.11 / static_cast<double>(seed), 1e6);
-    const judging::BitPlane empty(grid);
-    EXPECT_EQ(empty.count([](auto) { return ~judging::BitPlane::Word{0}; }), 0U);
-    for (std::size_t row = 0; row < grid.rows(); ++row)
-      EXPECT_TRUE(std::all_of(empty.row(row), empty.row(row) + (grid.columns() + 63) / 64,
-                              [](auto word) { return word == 0; }));
-    judging::BitPlane plane(grid, polygons);
-    judging::BitPlane twice(grid);
-    for (std::size_t row = 0; row < grid.rows(); ++row) {
-      plane.add(row, 3, 90);
-      plane.add_counting(row, 40, 1e9, twice);
-    }
-    EXPECT_GT(twice.count(), 0U);
   }
 }
 

@@ -1,7 +1,10 @@
 #include "judge/bit_plane.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
+
+#include "judge/rounding.hpp"
 
 namespace routebench::judging {
 namespace {

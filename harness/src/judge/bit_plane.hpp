@@ -7,7 +7,6 @@
 #include <limits>
 #include <vector>
 
-#include "judge/rounding.hpp"
 #include "judge/sample_grid.hpp"
 #include "routebench/geometry/types.hpp"
 
@@ -61,19 +60,19 @@ class BitPlane {
     return (words_[row * row_words_ + column / kWordBits] >> (column % kWordBits) & 1U) != 0;
   }
 
-  /// Adds the samples of a row from `left` to `right`, both in steps.
-  void add(std::size_t row, double left, double right) {
+  /// Adds the samples of a row from column `left` to column `right`, which may lie beyond the grid.
+  void add(std::size_t row, std::int64_t left, std::int64_t right) {
     use(row,
         visit_words(row, left, right, [this](std::size_t i, Word mask) { words_[i] |= mask; }));
   }
 
   /// Takes the samples away that `add` would add.
-  void remove(std::size_t row, double left, double right) {
+  void remove(std::size_t row, std::int64_t left, std::int64_t right) {
     visit_words(row, left, right, [this](std::size_t i, Word mask) { words_[i] &= ~mask; });
   }
 
   /// Adds samples as `add` does; those that were there already are added to `again` as well.
-  void add_counting(std::size_t row, double left, double right, BitPlane& again) {
+  void add_counting(std::size_t row, std::int64_t left, std::int64_t right, BitPlane& again) {
     Word met = 0;
     const Words words =
         visit_words(row, left, right, [this, &again, &met](std::size_t i, Word mask) {
@@ -142,12 +141,12 @@ class BitPlane {
   /// Calls visit(place of a word, mask) for the samples of a row from `left` to `right`; returns
   /// their words.
   template <typename Visit>
-  Words visit_words(std::size_t row, double left, double right, Visit&& visit) {
-    const double end_step = static_cast<double>(grid_->columns()) - 1;
-    if (!(right >= 0 && left <= end_step)) return {};
-    const auto first = static_cast<std::size_t>(rounded_up(std::max(left, 0.0)));
-    const auto last = static_cast<std::size_t>(rounded_down(std::min(right, end_step)));
-    if (first > last) return {};
+  Words visit_words(std::size_t row, std::int64_t left, std::int64_t right, Visit&& visit) {
+    left = std::max<std::int64_t>(left, 0);
+    right = std::min(right, static_cast<std::int64_t>(grid_->columns()) - 1);
+    if (left > right) return {};
+    const auto first = static_cast<std::size_t>(left);
+    const auto last = static_cast<std::size_t>(right);
     const Word from_first = ~Word{0} << (first % kWordBits);
     const Word to_last = ~Word{0} >> (kWordBits - 1 - last % kWordBits);
     const std::size_t begin = row * row_words_ + first / kWordBits;

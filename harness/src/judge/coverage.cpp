@@ -1,7 +1,7 @@
 #include "judge/coverage.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <cstdint>
 #include <utility>
 
 #include "judge/bit_plane.hpp"
@@ -36,27 +36,42 @@ void add_passes(BitPlane& once, BitPlane& twice, const Run& run, const Task& tas
     const bool goes_on = i > 0 || run.loop;
     const Point2 from = grid.to_steps(run.points[i]);
     const double radius = grid.to_steps(task.mean_width_mm(run.widths_mm[i]) / 2);
+    const std::int64_t first_start = rounded_up(from.y - radius);
+    const std::int64_t last_start = goes_on ? rounded_down(from.y + radius) : first_start - 1;
     const auto add = [&](std::size_t row, Span bead) {
-      const double dy = static_cast<double>(row) - from.y;
-      const Span start = goes_on && std::abs(dy) <= radius ? disc_row(from.x, dy, radius) : Span{};
+      const auto signed_row = static_cast<std::int64_t>(row);
+      const Span start = first_start <= signed_row && signed_row <= last_start
+                             ? disc_row(from.x, static_cast<double>(signed_row) - from.y, radius)
+                             : Span{};
       if (start.empty()) {
         once.add_counting(row, bead.left, bead.right, twice);
         return;
       }
-      // A sample on the rim of the disc belongs to it.
-      once.add_counting(row, bead.left, static_cast<double>(rounded_up(start.left) - 1), twice);
-      once.add_counting(row, static_cast<double>(rounded_down(start.right) + 1), bead.right, twice);
+      // A sample on the rim of the disc belongs to it. Mostly one end of the row is on the rim.
+      if (bead.left < start.left) once.add_counting(row, bead.left, start.left - 1, twice);
+      if (bead.right > start.right) once.add_counting(row, start.right + 1, bead.right, twice);
     };
-    visit_capsule_rows(from, grid.to_steps(run.points[i + 1]), radius, grid.rows(), add);
+    CapsuleRows rows(from, grid.to_steps(run.points[i + 1]), radius);
+    if (goes_on) rows.leave_tip(from);
+    rows.visit(grid.rows(), add);
   }
 }
 
 /// Samples of the walls and dense parts that beads are over.
 std::size_t samples_under_beads(const LayerSamples& samples, const std::vector<Run>& runs) {
-  BitPlane beads(samples.grid);
-  visit_beads(runs, [&beads](Point2 a, Point2 b, double width_mm) {
-    add_capsule(beads, a, b, width_mm / 2);
-  });
+  const SampleGrid& grid = samples.grid;
+  BitPlane beads(grid);
+  for (const Run& run : runs)
+    for (std::size_t i = 0; i < run.widths_mm.size(); ++i) {
+      const double width_mm = run.widths_mm[i];
+      if (width_mm <= 0) continue;
+      const Point2 from = grid.to_steps(run.points[i]);
+      CapsuleRows rows(from, grid.to_steps(run.points[i + 1]), grid.to_steps(width_mm / 2));
+      // The bead before ends in the same disc.
+      if (i > 0 && run.widths_mm[i - 1] == width_mm) rows.leave_tip(from);
+      rows.visit(grid.rows(),
+                 [&beads](std::size_t row, Span bead) { beads.add(row, bead.left, bead.right); });
+    }
   return samples.outline.count([](Word, Word s, Word b) { return ~s & b; }, samples.sparse, beads);
 }
 

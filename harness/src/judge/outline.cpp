@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <utility>
 
+#include "judge/beside.hpp"
+#include "judge/cell_rows.hpp"
 #include "routebench/geometry/region.hpp"
 #include "routebench/geometry/vec.hpp"
 
@@ -81,22 +83,12 @@ class SampleCells {
 
   void reach_from(Point2 a, Point2 b) {
     const CentreLine bead(a, b);
-    const Point2 from = to_cells(a);
-    const Point2 way = to_cells(b) - from;
-    const double reach = reach_mm_ / cell_mm_ + kRounding;
-    const auto [lower, upper] = std::minmax({from.y, from.y + way.y});
-    const std::size_t last_row = place(upper + reach, rows_);
-    for (std::size_t row = place(lower - reach, rows_); row <= last_row; ++row) {
-      if (unreached_in_row_[row] == 0) continue;
-      // Of the bead, what is no higher or lower than its reach over or under the row.
-      const double bottom = static_cast<double>(row) - reach - from.y;
-      const double top = bottom + 1 + 2 * reach;
-      const auto share = [&way](double rise) { return std::clamp(rise / way.y, 0.0, 1.0); };
-      const double enter = way.y == 0 ? 0 : share(bottom);
-      const double leave = way.y == 0 ? 1 : share(top);
-      const auto [left, right] = std::minmax({from.x + enter * way.x, from.x + leave * way.x});
-      reach_in(row, place(left - reach, columns_), place(right + reach, columns_), bead);
-    }
+    visit_cell_rows(to_cells(a), to_cells(b), reach_mm_ / cell_mm_ + kRounding, rows_,
+                    [&](std::size_t row, double left, double right) {
+                      if (unreached_in_row_[row] > 0)
+                        reach_in(row, nearest_cell(left, columns_), nearest_cell(right, columns_),
+                                 bead);
+                    });
   }
 
   [[nodiscard]] double share_reached() const {
@@ -116,14 +108,9 @@ class SampleCells {
 
   [[nodiscard]] Point2 to_cells(Point2 p) const { return (1 / cell_mm_) * (p - lower_); }
 
-  /// The nearest column or row.
-  [[nodiscard]] static std::size_t place(double cells, std::size_t end) {
-    return static_cast<std::size_t>(std::clamp(cells, 0.0, static_cast<double>(end - 1)));
-  }
-
   [[nodiscard]] std::size_t cell_of(Point2 p) const {
     const Point2 cells = to_cells(p);
-    return place(cells.y, rows_) * columns_ + place(cells.x, columns_);
+    return nearest_cell(cells.y, rows_) * columns_ + nearest_cell(cells.x, columns_);
   }
 
   void reach_in(std::size_t row, std::size_t first, std::size_t last, const CentreLine& bead) {
@@ -152,8 +139,9 @@ class SampleCells {
 
 std::optional<double> outline_covered(const Polygons& polygons, const std::vector<Run>& runs,
                                       double reach_mm) {
-  const double pitch =
-      std::max(std::min(0.1, reach_mm / 4), perimeter_mm(polygons) / (kMaxPoints / 2));
+  const double length_mm = perimeter_mm(polygons);
+  if (length_mm > 0 && is_surely_reached(polygons, runs, reach_mm)) return 1;
+  const double pitch = std::max(std::min(0.1, reach_mm / 4), length_mm / (kMaxPoints / 2));
   std::vector<Sample> samples = sample_boundary(polygons, pitch);
   if (samples.empty()) return std::nullopt;
   SampleCells cells(std::move(samples), bounding_box(polygons), reach_mm);

@@ -1,12 +1,13 @@
 #include "judge/reach.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <numbers>
 #include <optional>
 #include <utility>
 
 #include "judge/bit_plane.hpp"
-#include "judge/capsule.hpp"
+#include "judge/cell_rows.hpp"
 #include "judge/sample_grid.hpp"
 #include "judge/samples_left.hpp"
 #include "routebench/geometry/region.hpp"
@@ -87,11 +88,15 @@ bool is_reached_by_squares(const SampleGrid& grid, const Polygons& sparse,
   if (surely_mm <= 0) return false;
   BitPlane met(squares, sparse);
   const auto add_boundary = [&](const Ring& ring) {
+    // A sample's square reaches from half a step before it to half a step after it.
+    const auto to_squares = [&squares](Point2 p) { return squares.to_steps(p) + Point2{0.5, 0.5}; };
     for (std::size_t i = 0; i < ring.size(); ++i)
-      visit_capsule_rows(
-          squares.to_steps(ring[i == 0 ? ring.size() - 1 : i - 1]), squares.to_steps(ring[i]),
-          squares.to_steps(half_diagonal_mm) + kRounding, squares.rows(),
-          [&met](std::size_t row, Span span) { met.add(row, span.left, span.right); });
+      visit_cell_rows(to_squares(ring[i == 0 ? ring.size() - 1 : i - 1]), to_squares(ring[i]),
+                      kRounding, squares.rows(), [&](std::size_t row, double left, double right) {
+                        met.add(row,
+                                static_cast<std::int64_t>(nearest_cell(left, squares.columns())),
+                                static_cast<std::int64_t>(nearest_cell(right, squares.columns())));
+                      });
   };
   for (const Polygon& polygon : sparse) {
     add_boundary(polygon.outer);

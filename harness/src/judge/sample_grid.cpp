@@ -32,8 +32,14 @@ SampleGrid::SampleGrid(const Polygons& polygons, double margin_mm, double pitch_
 
 SampleGrid::Shares SampleGrid::shares_over(Point2 a, Point2 b) const noexcept {
   const Point2 from = to_steps(a);
-  const Point2 run = to_steps(b) - from;
+  const Point2 to = to_steps(b);
+  const auto is_over = [this](Point2 p) {
+    return p.x >= -0.5 && p.y >= -0.5 && p.x <= static_cast<double>(columns_) - 0.5 &&
+           p.y <= static_cast<double>(rows_) - 0.5;
+  };
   Shares shares{0, 1};
+  if (is_over(from) && is_over(to)) return shares;
+  const Point2 run = to - from;
   // Narrows the shares to those between two opposite sides of the box.
   const auto clip = [&shares](double start, double step, std::size_t count) {
     const double low = -0.5 - start;

@@ -24,7 +24,7 @@ void SamplesLeft::look() {
     none_ = false;
     while (!any(*(end - 1))) --end;
     const auto step = [words](const BitPlane::Word* word) {
-      return static_cast<double>(static_cast<std::size_t>(word - words) * BitPlane::kWordBits);
+      return (word - words) * static_cast<std::ptrdiff_t>(BitPlane::kWordBits);
     };
     rows_[row] = {step(first), step(end)};
   }
@@ -36,7 +36,9 @@ bool SamplesLeft::any_near(Point2 a, Point2 b, double radius) const {
   const double end = std::min(upper + radius + 1, static_cast<double>(rows_.size()));
   for (double y = std::max(lower - radius, 0.0); y < end; y += 1) {
     const Span& span = rows_[static_cast<std::size_t>(y)];
-    if (span.left <= right + radius && span.right >= left - radius) return true;
+    if (static_cast<double>(span.left) <= right + radius &&
+        static_cast<double>(span.right) >= left - radius)
+      return true;
   }
   return false;
 }

@@ -10,6 +10,7 @@
 
 #include "judge/bit_plane.hpp"
 #include "judge/cell_field.hpp"
+#include "judge/rounding.hpp"
 #include "judge/sample_grid.hpp"
 #include "routebench/geometry/vec.hpp"
 
@@ -63,7 +64,8 @@ class PartLedger {
       : part_(samples),
         grid_(part_.grid()),
         line_distance_mm_(line_distance_mm),
-        cell_steps_(cell_steps(grid_.to_steps(line_distance_mm))),
+        cell_shift_(cell_shift(grid_.to_steps(line_distance_mm))),
+        cell_steps_(std::size_t{1} << cell_shift_),
         box_(grid_, part, cell_steps_),
         demanded_(cells(box_.end_column - box_.first_column), cells(box_.end_row - box_.first_row)),
         laid_(demanded_) {
@@ -73,18 +75,21 @@ class PartLedger {
   /// A bead `strength` times as strong as the task's.
   void lay(Point2 a, Point2 b, double strength) {
     if (!box_.may_hold_of(grid_.to_steps(a), grid_.to_steps(b))) return;
-    visit_pieces(a, b, [&](std::size_t column, std::size_t row, double length_mm) {
-      if (part_.test(column, row)) add(column, row, length_mm * strength);
+    visit_pieces(a, b, [this, strength](double piece_mm) {
+      return [this, filled = samples_filled_by(piece_mm * strength)](std::size_t column,
+                                                                     std::size_t row) {
+        if (part_.test(column, row)) cell_at(laid_, column, row) += filled;
+      };
     });
   }
 
   /// Boundary of the part: half a line.
   void lay_boundary(const Ring& ring) {
     for (std::size_t i = 0; i < ring.size(); ++i)
-      visit_pieces(ring[i], ring[i + 1 == ring.size() ? 0 : i + 1],
-                   [&](std::size_t column, std::size_t row, double length_mm) {
-                     add(column, row, length_mm / 2);
-                   });
+      visit_pieces(ring[i], ring[i + 1 == ring.size() ? 0 : i + 1], [this](double piece_mm) {
+        return [this, filled = samples_filled_by(piece_mm / 2)](
+                   std::size_t column, std::size_t row) { cell_at(laid_, column, row) += filled; };
+      });
   }
 
   [[nodiscard]] double skipped_area_mm2() const {
@@ -110,17 +115,17 @@ class PartLedger {
   }
 
  private:
-  /// About half a line distance, as a power of two: so no cell lies in two words.
-  static std::size_t cell_steps(double line_distance_steps) {
-    std::size_t steps = 1;
-    while (2 * steps <= BitPlane::kWordBits &&
-           static_cast<double>(2 * steps) <= 0.75 * line_distance_steps)
-      steps *= 2;
-    return steps;
+  /// Of two, the power that gives about half a line distance: so no cell lies in two words.
+  static unsigned cell_shift(double line_distance_steps) {
+    unsigned shift = 0;
+    while (std::size_t{2} << shift <= BitPlane::kWordBits &&
+           static_cast<double>(std::size_t{2} << shift) <= 0.75 * line_distance_steps)
+      ++shift;
+    return shift;
   }
 
   [[nodiscard]] std::size_t cells(std::size_t steps) const {
-    return (steps + cell_steps_ - 1) / cell_steps_;
+    return (steps + cell_steps_ - 1) >> cell_shift_;
   }
 
   void count_samples() {
@@ -153,16 +158,16 @@ class PartLedger {
     return word;
   }
 
-  /// Calls visit(nearest sample's column, row, length_mm) for pieces of segment ab, each at most
-  /// half a cell long; only for those over the grid.
-  template <typename Visit>
-  void visit_pieces(Point2 a, Point2 b, Visit&& visit) const {
+  /// Cuts segment ab into pieces, each at most half a cell long; of what is over the grid calls
+  /// lay_with(length_mm of a piece)(nearest sample's column, row) for all of them.
+  template <typename LayWith>
+  void visit_pieces(Point2 a, Point2 b, LayWith&& lay_with) const {
     const SampleGrid::Shares shares = grid_.shares_over(a, b);
     const double length_mm = distance(a, b) * (shares.leave - shares.enter);
     const Point2 from = grid_.to_steps(lerp(a, b, shares.enter));
     const Point2 run = grid_.to_steps(lerp(a, b, shares.leave)) - from;
-    const double count =
-        std::ceil(grid_.to_steps(length_mm) * 2 / static_cast<double>(cell_steps_));
+    const auto count = static_cast<double>(
+        rounded_up(grid_.to_steps(length_mm) * 2 / static_cast<double>(cell_steps_)));
     const auto nearest = [](double steps, double last) {
       // By way of a signed number: to an unsigned one is several instructions on most processors.
       return static_cast<std::size_t>(
@@ -170,28 +175,28 @@ class PartLedger {
     };
     const double last_column = static_cast<double>(grid_.columns() - 1);
     const double last_row = static_cast<double>(grid_.rows() - 1);
-    const double piece_mm = length_mm / count;
+    const auto lay = lay_with(length_mm / count);
     for (double i = 0; i < count; i += 1) {
       const Point2 middle = from + ((i + 0.5) / count) * run;
-      visit(nearest(middle.x, last_column), nearest(middle.y, last_row), piece_mm);
+      lay(nearest(middle.x, last_column), nearest(middle.y, last_row));
     }
   }
 
   /// Every mm of line fills its distance's width.
-  void add(std::size_t column, std::size_t row, double length_mm) {
-    cell_at(laid_, column, row) +=
-        static_cast<float>(length_mm * line_distance_mm_ / grid_.sample_mm2());
+  [[nodiscard]] float samples_filled_by(double length_mm) const {
+    return static_cast<float>(length_mm * line_distance_mm_ / grid_.sample_mm2());
   }
 
   /// The cell of a sample in the box.
   [[nodiscard]] float& cell_at(CellField& field, std::size_t column, std::size_t row) const {
-    return field.at((column - box_.first_column) / cell_steps_,
-                    (row - box_.first_row) / cell_steps_);
+    return field.at((column - box_.first_column) >> cell_shift_,
+                    (row - box_.first_row) >> cell_shift_);
   }
 
   const BitPlane& part_;
   const SampleGrid& grid_;
   double line_distance_mm_;
+  unsigned cell_shift_;  // of columns and rows to their cells
   std::size_t cell_steps_;
   SampleBox box_;
   CellField demanded_;  // in samples
