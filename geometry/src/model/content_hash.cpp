@@ -35,7 +35,7 @@ std::uint64_t point_hash(const Point3& p) noexcept {
 std::uint64_t triangle_hash(std::uint64_t a, std::uint64_t b, std::uint64_t c) noexcept {
   const std::array<std::uint64_t, 5> round{a, b, c, a, b};
   const bool a_is_least = static_cast<unsigned>(a <= b) & static_cast<unsigned>(a <= c);
-  const std::size_t least = a_is_least ? 0 : b <= c ? 1 : 2;
+  const std::size_t least = (a_is_least ? 0 : 1) * (2 - static_cast<std::size_t>(b <= c));
   return chain(chain(round[least], round[least + 1]), round[least + 2]);
 }
 

@@ -5,9 +5,11 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "large_vector.hpp"
+#include "routebench/geometry/grid.hpp"
 #include "routebench/geometry/parallel.hpp"
 #include "routebench/geometry/slice.hpp"
 #include "routebench/geometry/types.hpp"
@@ -58,7 +60,14 @@ struct CutTable {
 
 /// Where an edge that crosses the plane at z_mm meets it, on the grid. It depends on the
 /// coordinates of the edge's ends alone, so all triangles at an edge find the same point.
-[[nodiscard]] Point2 cut_point(const Mesh& mesh, EdgeKey edge, double z_mm);
+[[nodiscard]] inline Point2 cut_point(const Mesh& mesh, EdgeKey edge, double z_mm) noexcept {
+  const Point3* lower = &mesh.vertices[edge >> 32U];
+  const Point3* upper = &mesh.vertices[static_cast<std::uint32_t>(edge)];
+  if (lower->z > upper->z) std::swap(lower, upper);
+  const double share = (z_mm - lower->z) / (upper->z - lower->z);
+  return snap(
+      Point2{lower->x + share * (upper->x - lower->x), lower->y + share * (upper->y - lower->y)});
+}
 
 /// Cuts all triangles by all planes. The order of cuts within a layer depends on the method.
 /// Throws Error{kBadInput} naming the model where there are more cuts than memory should be spent
