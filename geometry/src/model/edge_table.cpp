@@ -48,35 +48,48 @@ EdgeTable::EdgeTable(std::span<const std::array<std::uint32_t, 3>> triangles, st
 
   strays_.resize(ranges);
   parallel_for(ranges, [&](std::size_t range) { strays_[range] = strays_from(range); });
-  hand_out_strays();
+  received_.resize(ranges);
+  for (const Strays& from : strays_)
+    for (const Strays::Group& group : from.groups) received_[group.range].push_back(group.strays);
 }
 
-std::vector<EdgeTable::Stray> EdgeTable::strays_from(std::size_t range) const {
-  std::vector<Stray> strays;
+EdgeTable::Strays EdgeTable::strays_from(std::size_t range) const {
+  std::vector<Stray> found;
   const std::uint32_t first = first_vertex_[range];
   const auto keep = [&](std::uint32_t lower, Side side) {
-    if (lower < first) strays.push_back({lower, side});
+    if (lower < first) found.push_back({lower, side});
   };
   const auto [begin, end] = triangles_of(range);
   for (std::size_t t = begin; t < end; ++t) {
     const auto& [a, b, c] = triangles_[t];
     if (std::min(std::min(a, b), c) < first) for_each_side_of(t, keep);
   }
-  return strays;
-}
+  if (found.empty()) return {};
 
-/// Tells each range what of the others lies on its edges.
-void EdgeTable::hand_out_strays() {
-  received_.resize(ranges());
-  for (const std::vector<Stray>& strays : strays_)
-    for (std::size_t first = 0, next = 0; first < strays.size(); first = next) {
-      const auto after =
-          std::upper_bound(first_vertex_.begin(), first_vertex_.end(), strays[first].lower);
-      const std::uint32_t from = *(after - 1), to = *after;
-      while (next < strays.size() && strays[next].lower >= from && strays[next].lower < to) ++next;
-      const auto range = static_cast<std::size_t>(after - first_vertex_.begin() - 1);
-      received_[range].push_back(std::span(strays).subspan(first, next - first));
+  // A counting sort. The range of one is mostly that of the one before.
+  std::vector<std::uint32_t> ranges(found.size());
+  std::vector<std::size_t> place(range + 1);
+  std::uint32_t last = 0;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const std::uint32_t lower = found[i].lower;
+    if (lower < first_vertex_[last] || lower >= first_vertex_[last + 1]) {
+      const auto after = std::upper_bound(first_vertex_.begin(), first_vertex_.end(), lower);
+      last = static_cast<std::uint32_t>(after - first_vertex_.begin() - 1);
     }
+    ranges[i] = last;
+    ++place[last];
+  }
+  Strays sorted{LargeVector<Stray>(found.size()), {}};
+  std::size_t next = 0;
+  for (std::size_t to = 0; to < place.size(); ++to) {
+    const std::size_t count = std::exchange(place[to], next);
+    if (count == 0) continue;
+    sorted.groups.push_back(
+        {static_cast<std::uint32_t>(to), std::span(sorted.strays).subspan(next, count)});
+    next += count;
+  }
+  for (std::size_t i = 0; i < found.size(); ++i) sorted.strays[place[ranges[i]]++] = found[i];
+  return sorted;
 }
 
 EdgeTable::SortedSides EdgeTable::sorted_sides(std::size_t range) const {

@@ -67,7 +67,7 @@ class FirstPoints {
     Tag tag;
     std::uint32_t point;
   };
-  static constexpr std::size_t kPointsPerHeap = std::size_t{1} << 14U;
+  static constexpr std::size_t kPointsPerHeap = std::size_t{1} << 12U;
   static constexpr std::size_t kMostHeaps = std::size_t{1} << 10U;
 
   /// Calls visit(point, tag) for the points of a part.
