@@ -28,12 +28,12 @@ void add_ring(std::span<const Point2> points, std::vector<Ring>& rings) {
   if (ring.size() >= 3) rings.push_back(std::move(ring));
 }
 
-/// Finds the cut that begins on an edge. Open addressing, at most half full.
+/// Finds the cut that begins on an edge. Open addressing, at most a third full.
 class CutsByEdge {
  public:
   explicit CutsByEdge(std::span<const Cut> cuts)
       : edges_(cuts.size()),
-        slots_(std::bit_ceil(2 * cuts.size() + 1), kNone),
+        slots_(std::bit_ceil(3 * cuts.size() + 1), kNone),
         shift_(64 - std::countr_zero(slots_.size())) {
     std::transform(cuts.begin(), cuts.end(), edges_.begin(),
                    [](const Cut& cut) { return cut.from(); });

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "large_vector.hpp"
@@ -33,7 +32,9 @@ struct Planes {
 using EdgeKey = std::uint64_t;
 
 [[nodiscard]] constexpr EdgeKey edge_key(std::uint32_t v, std::uint32_t w) noexcept {
-  return v < w ? EdgeKey{v} << 32 | w : EdgeKey{w} << 32 | v;
+  // Calculated, since nobody could foresee a branch.
+  const std::uint32_t lower = w ^ ((v ^ w) & (0U - static_cast<std::uint32_t>(v < w)));
+  return EdgeKey{lower} << 32U | (v ^ w ^ lower);
 }
 
 /// Where one triangle meets one plane: a straight line from one edge to another, the material on
@@ -61,12 +62,13 @@ struct CutTable {
 /// Where an edge that crosses the plane at z_mm meets it, on the grid. It depends on the
 /// coordinates of the edge's ends alone, so all triangles at an edge find the same point.
 [[nodiscard]] inline Point2 cut_point(const Mesh& mesh, EdgeKey edge, double z_mm) noexcept {
-  const Point3* lower = &mesh.vertices[edge >> 32U];
-  const Point3* upper = &mesh.vertices[static_cast<std::uint32_t>(edge)];
-  if (lower->z > upper->z) std::swap(lower, upper);
-  const double share = (z_mm - lower->z) / (upper->z - lower->z);
-  return snap(
-      Point2{lower->x + share * (upper->x - lower->x), lower->y + share * (upper->y - lower->y)});
+  // Without a branch, too.
+  const auto v = static_cast<std::uint32_t>(edge >> 32U), w = static_cast<std::uint32_t>(edge);
+  const bool falls = mesh.vertices[v].z > mesh.vertices[w].z;
+  const std::uint32_t change = (v ^ w) & (0U - static_cast<std::uint32_t>(falls));
+  const Point3 &lower = mesh.vertices[v ^ change], &upper = mesh.vertices[w ^ change];
+  const double share = (z_mm - lower.z) / (upper.z - lower.z);
+  return snap(Point2{lower.x + share * (upper.x - lower.x), lower.y + share * (upper.y - lower.y)});
 }
 
 /// Cuts all triangles by all planes. The order of cuts within a layer depends on the method.
