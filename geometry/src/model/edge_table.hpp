@@ -19,9 +19,8 @@ namespace routebench::models {
 /// of their sides are found in that stretch, where a mesh's triangles follow their neighbours; the
 /// others are kept. So a range's edges are made when they are asked for, near to the processor.
 ///
-/// Cost   a counting sort by the lower vertex, linear; 16 bytes a side that is kept, twice as many
-/// for
-///        a moment.
+/// Cost   a counting sort by the lower vertex, linear; 16 bytes a side that is kept, for a moment
+///        twice as many.
 class EdgeTable {
  public:
   static constexpr std::size_t kTrianglesPerRange = std::size_t{1} << 15U;

@@ -43,8 +43,8 @@ class FacetSink {
     if (filled_ == batch_.size()) flush();
   }
 
-  /// Adds many at once: the corners of up to kFacetsAtOnce facets, `offset(i)` tells where the i-th
-  /// is. Faster than one by one where all are finite and nothing was left out before.
+  /// Adds up to kFacetsAtOnce facets, which lose their negative zeros; `place_of(i)` tells where
+  /// the i-th is. Faster than one by one where all are finite and nothing was left out before.
   static constexpr std::size_t kFacetsAtOnce = VertexWelder<FloatPoint>::kBatch / 3;
   template <typename Place>
   void add(std::span<Facet> facets, const Place& place_of) {

@@ -85,21 +85,19 @@ std::size_t checked_highest(const std::vector<Point3>& vertices, const std::stri
   return highest.empty() ? 0 : *std::max_element(highest.begin(), highest.end(), is_lower);
 }
 
-[[noreturn]] void refuse_corner(const Mesh& mesh, std::size_t triangle,
-                                const std::string& model_name) {
-  const auto& corners = mesh.triangles[triangle];
-  const auto corner = std::find_if(corners.begin(), corners.end(),
-                                   [&](std::uint32_t v) { return v >= mesh.vertices.size(); });
-  refuse(model_name, "triangle " + std::to_string(triangle) + " names vertex " +
-                         std::to_string(*corner) + ", but there are only " +
-                         std::to_string(mesh.vertices.size()));
+/// Refuses a triangle that names a vertex which is not there.
+void refuse_wrong_corner(const Mesh& mesh, std::size_t triangle, const std::string& model_name) {
+  for (const std::uint32_t corner : mesh.triangles[triangle])
+    if (corner >= mesh.vertices.size())
+      refuse(model_name, "triangle " + std::to_string(triangle) + " names vertex " +
+                             std::to_string(corner) + ", but there are only " +
+                             std::to_string(mesh.vertices.size()));
 }
 
 /// Returns the height of the highest vertex that belongs to a triangle; at least 0.
 double checked_top_mm(const Mesh& mesh, const std::string& model_name,
                       const ParallelFor& parallel_for) {
-  const auto highest =
-      static_cast<std::uint32_t>(checked_highest(mesh.vertices, model_name, parallel_for));
+  const std::size_t highest = checked_highest(mesh.vertices, model_name, parallel_for);
   std::vector<std::uint8_t> has_highest(models::block_count(mesh.triangles.size()));
   const auto check = [&](std::size_t block, std::size_t begin, std::size_t end) {
     // Several corners at a time; where a triangle is wrong matters only if one is.
@@ -111,8 +109,7 @@ double checked_top_mm(const Mesh& mesh, const std::string& model_name,
         found |= static_cast<unsigned>(corner == highest);
       }
     for (std::size_t t = begin; last >= mesh.vertices.size() && t < end; ++t)
-      if (std::ranges::max(mesh.triangles[t]) >= mesh.vertices.size())
-        refuse_corner(mesh, t, model_name);
+      refuse_wrong_corner(mesh, t, model_name);
     has_highest[block] = static_cast<std::uint8_t>(found);
   };
   models::for_each_block(mesh.triangles.size(), parallel_for, check);
