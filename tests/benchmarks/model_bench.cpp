@@ -10,7 +10,10 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <random>
 #include <span>
+#include <utility>
+#include <vector>
 
 #include "bench_models.hpp"
 #include "model/vertex_welder.hpp"
@@ -40,13 +43,38 @@ std::string ascii_stl(const Mesh& mesh) {
   return text + "endsolid sphere\n";
 }
 
+/// What a file of a sphere is like.
+enum class Kind {
+  kBinary,
+  kAscii,
+  kScan,  ///< binary, with the rough surface and the order of a simplified scan
+};
+
+/// Moves vertices by up to 0.01 mm and shuffles the triangles, a few neighbours together.
+void make_like_a_scan(Mesh& mesh) {
+  constexpr std::size_t kTogether = 16;
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> noise_mm(-0.01, 0.01);
+  for (Point3& p : mesh.vertices)
+    p = {p.x + noise_mm(random), p.y + noise_mm(random), p.z + noise_mm(random)};
+  std::vector<std::size_t> begins;
+  for (std::size_t t = 0; t < mesh.triangles.size(); t += kTogether) begins.push_back(t);
+  std::shuffle(begins.begin(), begins.end(), random);
+  std::vector<std::array<std::uint32_t, 3>> shuffled;
+  for (const std::size_t begin : begins)
+    for (std::size_t t = begin; t < std::min(begin + kTogether, mesh.triangles.size()); ++t)
+      shuffled.push_back(mesh.triangles[t]);
+  mesh.triangles = std::move(shuffled);
+}
+
 /// A file of a sphere, 150 mm across, that is there as long as the program.
 class SphereFile {
  public:
-  SphereFile(std::int64_t triangles, bool ascii) : path_(folder_.path() / "model.stl") {
-    const Mesh mesh =
-        load_model("shape:sphere?diameter=150&triangles=" + std::to_string(triangles)).mesh;
-    std::ofstream(path_, std::ios::binary) << (ascii ? ascii_stl(mesh) : stl_bytes(mesh));
+  SphereFile(std::int64_t triangles, Kind kind) : path_(folder_.path() / "model.stl") {
+    Mesh mesh = load_model("shape:sphere?diameter=150&triangles=" + std::to_string(triangles)).mesh;
+    if (kind == Kind::kScan) make_like_a_scan(mesh);
+    std::ofstream(path_, std::ios::binary)
+        << (kind == Kind::kAscii ? ascii_stl(mesh) : stl_bytes(mesh));
     bytes_ = fs::file_size(path_);
   }
   [[nodiscard]] std::string path() const { return path_.string(); }
@@ -59,9 +87,9 @@ class SphereFile {
 };
 
 /// Large files are written once.
-const SphereFile& sphere_file(std::int64_t triangles, bool ascii) {
-  static std::map<std::pair<std::int64_t, bool>, SphereFile> files;
-  return files.try_emplace({triangles, ascii}, triangles, ascii).first->second;
+const SphereFile& sphere_file(std::int64_t triangles, Kind kind) {
+  static std::map<std::pair<std::int64_t, Kind>, SphereFile> files;
+  return files.try_emplace({triangles, kind}, triangles, kind).first->second;
 }
 
 void count(benchmark::State& state, std::size_t bytes) {
@@ -79,9 +107,9 @@ void read_into(const std::string& path, std::string& bytes) {
 }
 
 /// Reading means welding, mending, the mesh's report and its placement, too.
-template <bool kAscii>
+template <Kind kKind>
 void read_stl(benchmark::State& state) {
-  const SphereFile& file = sphere_file(state.range(0), kAscii);
+  const SphereFile& file = sphere_file(state.range(0), kKind);
   const ParallelFor parallel_for = parallel_loop(static_cast<int>(state.range(1)));
   for (auto _ : state) benchmark::DoNotOptimize(load_model(file.path(), {}, parallel_for));
   count(state, file.bytes());
@@ -99,14 +127,14 @@ void two_million(benchmark::internal::Benchmark* bench) {
       ->Unit(benchmark::kMillisecond)
       ->UseRealTime();
 }
-BENCHMARK(read_stl<false>)->Name("read_binary_stl")->Apply(over_sizes);
-BENCHMARK(read_stl<true>)->Name("read_ascii_stl")->Apply(over_sizes);
-BENCHMARK(read_stl<false>)->Name("read_large_binary_stl")->Apply(two_million);
-BENCHMARK(read_stl<true>)->Name("read_large_ascii_stl")->Apply(two_million);
+BENCHMARK(read_stl<Kind::kBinary>)->Name("read_binary_stl")->Apply(over_sizes);
+BENCHMARK(read_stl<Kind::kAscii>)->Name("read_ascii_stl")->Apply(over_sizes);
+BENCHMARK(read_stl<Kind::kBinary>)->Name("read_large_binary_stl")->Apply(two_million);
+BENCHMARK(read_stl<Kind::kAscii>)->Name("read_large_ascii_stl")->Apply(two_million);
 
 /// What the system takes to hand over the bytes of the same file.
 void copy_large_binary_stl(benchmark::State& state) {
-  const SphereFile& file = sphere_file(state.range(0), false);
+  const SphereFile& file = sphere_file(state.range(0), Kind::kBinary);
   std::string bytes(file.bytes(), '\0');
   for (auto _ : state) {
     read_into(file.path(), bytes);
@@ -118,7 +146,7 @@ BENCHMARK(copy_large_binary_stl)->Arg(2'000'000)->Unit(benchmark::kMillisecond)-
 
 /// What it takes to read the same text and count its lines.
 void scan_large_ascii_stl(benchmark::State& state) {
-  const SphereFile& file = sphere_file(state.range(0), true);
+  const SphereFile& file = sphere_file(state.range(0), Kind::kAscii);
   std::string bytes(file.bytes(), '\0');
   for (auto _ : state) {
     read_into(file.path(), bytes);
@@ -129,8 +157,9 @@ void scan_large_ascii_stl(benchmark::State& state) {
 BENCHMARK(scan_large_ascii_stl)->Arg(2'000'000)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 /// From a binary file to 750 layers.
+template <Kind kKind>
 void read_and_slice(benchmark::State& state) {
-  const SphereFile& file = sphere_file(state.range(0), false);
+  const SphereFile& file = sphere_file(state.range(0), kKind);
   const ParallelFor parallel_for = parallel_loop(static_cast<int>(state.range(1)));
   for (auto _ : state) {
     const Model model = load_model(file.path(), {}, parallel_for);
@@ -138,7 +167,8 @@ void read_and_slice(benchmark::State& state) {
   }
   count(state, file.bytes());
 }
-BENCHMARK(read_and_slice)->Apply(two_million);
+BENCHMARK(read_and_slice<Kind::kBinary>)->Name("read_and_slice")->Apply(two_million);
+BENCHMARK(read_and_slice<Kind::kScan>)->Name("read_and_slice_scan")->Apply(two_million);
 
 /// Equal corners become one vertex; what the readers do on the way.
 void weld_corners(benchmark::State& state) {

@@ -277,6 +277,23 @@ TEST(SliceMesh, RefusesMeshesThatAreNone) {
   }
 }
 
+TEST(SliceMesh, VerticesOfNoTriangleDoNotCount) {
+  const Mesh mesh = box({0, 0, 0}, {10, 10, 10});
+  const Slices expected = slice_mesh(mesh, {}, "part");
+  // The highest vertices belong to no triangle, or one of several that are as high does not.
+  for (const double z_mm : {10.0, 70.0}) {
+    Mesh with_more = mesh;
+    for (auto& triangle : with_more.triangles)
+      for (std::uint32_t& corner : triangle) ++corner;
+    with_more.vertices.insert(with_more.vertices.begin(), {3, 3, z_mm});
+    with_more.vertices.push_back({3, 4, z_mm});
+    const Slices slices = slice_mesh(with_more, {}, "part");
+    ASSERT_EQ(slices.layers.size(), expected.layers.size());
+    for (std::size_t i = 0; i < slices.layers.size(); ++i)
+      EXPECT_EQ(slices.layers[i].polygons, expected.layers[i].polygons);
+  }
+}
+
 TEST(SliceMethod, NamesAreUnderstoodOrRefused) {
   EXPECT_EQ(slice_method("bucket"), SliceMethod::kBucket);
   EXPECT_EQ(slice_method("sweep"), SliceMethod::kSweep);

@@ -130,6 +130,35 @@ TEST(LargeStl, TheOrderOfFacetsChangesNothingButNumbers) {
   EXPECT_EQ(model.warnings, expected.warnings);
 }
 
+TEST(LargeStl, CopiesAreFoundHoweverFarTheyAreApart) {
+  Mesh mesh = large_mesh();
+  const std::size_t facets = mesh.triangles.size(), corners = mesh.vertices.size();
+  std::vector<std::array<std::uint32_t, 3>> again = mesh.triangles;
+  std::shuffle(again.begin(), again.end(), std::mt19937_64(7));
+  mesh.triangles.insert(mesh.triangles.end(), again.begin(), again.end());
+  const ModelFile file("twice.stl", stl_bytes(mesh));
+  const Model model = load_model(file.path(), {}, backwards_on_threads);
+  EXPECT_EQ(model.report.triangles, 2 * facets);
+  EXPECT_EQ(model.report.vertices, corners);
+  EXPECT_EQ(model.report.duplicate_triangles, facets);
+  EXPECT_EQ(model.mesh.triangles.size(), facets);
+}
+
+TEST(LargeStl, FaultsFarInsideALargeBinaryFileAreNamedWithFacetAndByte) {
+  const std::string plain = stl_bytes(large_mesh());
+  // One stands at the beginning of what is looked at together, the others inside and at its end.
+  for (const std::size_t facet : {100'001U, 120'000U, 149'999U}) {
+    std::string bytes = plain;
+    const std::size_t offset = 84 + 50 * (facet - 1);
+    const float infinite = -std::numeric_limits<float>::infinity();
+    std::memcpy(bytes.data() + offset + 12 + 4 * 7, &infinite, sizeof infinite);
+    const ModelFile file("part.stl", bytes);
+    const std::string said = refusal_of(file.path());
+    const std::string place = "facet " + std::to_string(facet) + " (byte " + std::to_string(offset);
+    EXPECT_NE(said.find(place + "): the y of corner 3 is infinite"), std::string::npos) << said;
+  }
+}
+
 TEST(LargeStl, FaultsFarInsideALargeAsciiFileAreNamedWithFacetAndLine) {
   const std::string plain = ascii_stl(large_mesh());
   ASSERT_GT(plain.size(), 20U << 20U);

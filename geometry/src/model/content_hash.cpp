@@ -1,6 +1,6 @@
 #include "model/content_hash.hpp"
 
-#include <array>
+#include <algorithm>
 #include <bit>
 #include <numeric>
 #include <vector>
@@ -33,10 +33,14 @@ std::uint64_t point_hash(const Point3& p) noexcept {
 
 /// Whichever corner comes first. Without branches, which nobody could foresee.
 std::uint64_t triangle_hash(std::uint64_t a, std::uint64_t b, std::uint64_t c) noexcept {
-  const std::array<std::uint64_t, 5> round{a, b, c, a, b};
-  const bool a_is_least = static_cast<unsigned>(a <= b) & static_cast<unsigned>(a <= c);
-  const std::size_t least = a_is_least ? 0 : b <= c ? 1 : 2;
-  return chain(chain(round[least], round[least + 1]), round[least + 2]);
+  const std::uint64_t all = a ^ b ^ c;
+  const auto all_if = [](bool is) { return 0 - static_cast<std::uint64_t>(is); };
+  const std::uint64_t least = std::min(std::min(a, b), c);
+  // Of equal corners the first one counts; which one is seen in what follows it.
+  const std::uint64_t a_is_least = all_if(a == least), b_is_least = all_if(b == least);
+  const std::uint64_t next =
+      (b & a_is_least) | (~a_is_least & ((c & b_is_least) | (a & ~b_is_least)));
+  return chain(chain(least, next), all ^ least ^ next);
 }
 
 }  // namespace

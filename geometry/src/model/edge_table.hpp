@@ -19,7 +19,8 @@ namespace routebench::models {
 /// of their sides are found in that stretch, where a mesh's triangles follow their neighbours; the
 /// others are kept. So a range's edges are made when they are asked for, near to the processor.
 ///
-/// Cost   a counting sort by the lower vertex, linear; 16 bytes a side that is kept.
+/// Cost   a counting sort by the lower vertex, linear; 16 bytes a side that is kept, for a moment
+///        twice as many.
 class EdgeTable {
  public:
   static constexpr std::size_t kTrianglesPerRange = std::size_t{1} << 15U;
@@ -84,7 +85,6 @@ class EdgeTable {
  private:
   /// A side on an edge of a range that is not its triangle's.
   struct Stray {
-    std::uint32_t range;
     std::uint32_t lower;
     Side side;
   };
@@ -96,12 +96,22 @@ class EdgeTable {
   /// Calls visit(lower, side) for a triangle's sides.
   template <typename Visit>
   void for_each_side_of(std::size_t triangle, Visit&& visit) const;
-  [[nodiscard]] std::vector<Stray> strays_from(std::size_t range) const;
+  /// Sides in the stretch of a range that lie on edges of others, by the edge's range.
+  struct Strays {
+    struct Group {
+      std::uint32_t range;
+      std::span<const Stray> strays;
+    };
+    LargeVector<Stray> strays;
+    std::vector<Group> groups;
+  };
+  [[nodiscard]] Strays strays_from(std::size_t range) const;
   [[nodiscard]] SortedSides sorted_sides(std::size_t range) const;
 
   std::span<const std::array<std::uint32_t, 3>> triangles_;
-  std::vector<std::uint32_t> first_vertex_;  ///< of each range, and the end
-  std::vector<std::vector<Stray>> strays_;   ///< on the edges of each range
+  std::vector<std::uint32_t> first_vertex_;                    ///< of each range, and the end
+  std::vector<Strays> strays_;                                 ///< from the stretch of each range
+  std::vector<std::vector<std::span<const Stray>>> received_;  ///< on the edges of each range
 };
 
 }  // namespace routebench::models

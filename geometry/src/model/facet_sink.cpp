@@ -1,6 +1,7 @@
 #include "model/facet_sink.hpp"
 
 #include <cmath>
+#include <cstring>
 #include <string>
 #include <utility>
 
@@ -12,6 +13,17 @@ FacetSink::FacetSink(const ReadContext& context, Room room, std::size_t expected
       room_(std::move(room)),
       welder_(expected),  // a closed mesh has half as many vertices: with room few collide
       seen_(facets_before) {}
+
+bool FacetSink::are_finite(std::span<const Facet> facets) noexcept {
+  // What is infinite or not a number has all bits of the exponent. Four numbers at a time.
+  constexpr std::uint32_t kExponent = 0x7F800000U;
+  std::array<std::uint32_t, 9 * kFacetsAtOnce> bits{};
+  std::memcpy(bits.data(), facets.data(), facets.size_bytes());
+  std::uint32_t found = 0;
+  for (const std::uint32_t number : bits)
+    found |= (number & kExponent) == kExponent ? 0xFFFFFFFFU : 0U;
+  return found == 0;
+}
 
 bool FacetSink::each_is_finite(const Facet& facet) noexcept {
   for (const auto& corner : facet) {
@@ -38,11 +50,12 @@ void FacetSink::refuse_not_finite(const Facet& facet, const std::string& place) 
                                   "left out");
 }
 
-void FacetSink::flush() {
+void FacetSink::weld(std::span<FloatPoint> corners) {
   static_assert(decltype(welder_)::kBatch % 3 == 0);
-  if (filled_ > 0) welder_.weld({batch_.data(), filled_}, room_(filled_ / 3)->data());
-  filled_ = 0;
+  if (!corners.empty()) welder_.weld(corners, room_(corners.size() / 3)->data());
 }
+
+void FacetSink::flush() { weld(std::span(batch_).first(std::exchange(filled_, 0))); }
 
 std::vector<FloatPoint> FacetSink::take_vertices() {
   flush();

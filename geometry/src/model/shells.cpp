@@ -53,7 +53,13 @@ void measure_triangles(const Surface& surface, const ParallelFor& parallel_for,
   std::vector<std::vector<Shell>> figures(block_count(triangles), shells);
   const auto measure_block = [&](std::size_t block, std::size_t begin, std::size_t end) {
     std::vector<Shell>& own = figures[block];
-    for (std::size_t t = begin; t < end; ++t) add(own[surface.shell[t]], t);
+    if (own.size() > 1) {
+      for (std::size_t t = begin; t < end; ++t) add(own[surface.shell[t]], t);
+      return;
+    }
+    Shell only = own[0];  // in registers
+    for (std::size_t t = begin; t < end; ++t) add(only, t);
+    own[0] = only;
   };
   for_each_block(triangles, parallel_for, measure_block);
   for (const std::vector<Shell>& own : figures) {

@@ -48,6 +48,8 @@ class Survey {
     patch_.resize(mesh_.triangles.size());
     std::vector<Met> ranges(edges_.ranges());
     parallel_for(ranges.size(), [&](std::size_t range) { ranges[range] = meet_edges(range); });
+    parallel_for(ranges.size(),
+                 [&](std::size_t range) { find_patches(ranges[range].far_neighbours); });
     for (Met& met : ranges) {
       result_.open_edges += met.open_edges;
       result_.copies_along += met.copies_along;
@@ -80,7 +82,20 @@ class Survey {
       else
         met.far_neighbours.push_back({a, b});
     });
+    for (std::size_t t = begin; t < end; ++t) patch_[t] = patch_[patch_[t]];
     return met;
+  }
+
+  /// Replaces triangles by those that their patches begin with and drops most that come again.
+  void find_patches(std::vector<std::array<std::uint32_t, 2>>& neighbours) const {
+    std::array<std::array<std::uint32_t, 2>, 256> seen{};
+    std::size_t kept = 0;
+    for (const auto& [a, b] : neighbours) {
+      const std::array<std::uint32_t, 2> both{patch_[a], patch_[b]};
+      std::array<std::uint32_t, 2>& last = seen[(both[0] ^ both[1] * 31) % seen.size()];
+      if (both != last) neighbours[kept++] = last = both;
+    }
+    neighbours.resize(kept);
   }
 
   /// Union-find: each triangle has a lower one of its patch, the lowest has itself.

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <span>
 #include <vector>
 
@@ -19,9 +20,6 @@ using FloatPoint = std::array<float, 3>;
 [[nodiscard]] inline Point3 without_negative_zeros(const Point3& p) noexcept {
   return {p.x + 0.0, p.y + 0.0, p.z + 0.0};
 }
-[[nodiscard]] inline FloatPoint without_negative_zeros(const FloatPoint& p) noexcept {
-  return {p[0] + 0.0F, p[1] + 0.0F, p[2] + 0.0F};
-}
 
 /// 32 bits of a hash of a point without negative zeros. Its low bits choose a slot.
 [[nodiscard]] inline std::uint32_t tag_of(const Point3& point) noexcept {
@@ -33,9 +31,10 @@ using FloatPoint = std::array<float, 3>;
   return static_cast<std::uint32_t>(h >> 32U);
 }
 [[nodiscard]] inline std::uint32_t tag_of(const FloatPoint& point) noexcept {
-  const auto bits = std::bit_cast<std::array<std::uint32_t, 3>>(point);
-  std::uint64_t h = (std::uint64_t{bits[1]} << 32U | bits[0]) * 0x9E3779B97F4A7C15U;
-  h = std::rotl(h, 29) ^ bits[2];
+  std::uint64_t xy = 0;
+  std::memcpy(&xy, point.data(), sizeof xy);
+  std::uint64_t h = xy * 0x9E3779B97F4A7C15U;
+  h = std::rotl(h, 29) ^ std::bit_cast<std::uint32_t>(point[2]);
   h *= 0xBF58476D1CE4E5B9U;
   return static_cast<std::uint32_t>(h >> 32U);
 }

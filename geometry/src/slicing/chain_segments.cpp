@@ -9,10 +9,13 @@
 #include <tuple>
 #include <utility>
 
+#include "large_vector.hpp"
+
 namespace routebench::slicing {
 namespace {
 
 constexpr std::uint32_t kNone = UINT32_MAX;
+constexpr std::uint32_t kUsed = kNone - 1;
 
 bool precedes(Point2 a, Point2 b) { return std::tie(a.x, a.y) < std::tie(b.x, b.y); }
 
@@ -25,17 +28,22 @@ void add_ring(std::span<const Point2> points, std::vector<Ring>& rings) {
   if (ring.size() >= 3) rings.push_back(std::move(ring));
 }
 
-/// Finds the cut that begins on an edge. Open addressing, at most half full.
+/// Finds the cut that begins on an edge. Open addressing, at most a third full.
 class CutsByEdge {
  public:
   explicit CutsByEdge(std::span<const Cut> cuts)
-      : cuts_(cuts),
-        slots_(std::bit_ceil(2 * cuts.size() + 1), kNone),
-        shift_(64 - std::countr_zero(slots_.size())) {}
+      : edges_(cuts.size()),
+        slots_(std::bit_ceil(3 * cuts.size() + 1), kNone),
+        shift_(64 - std::countr_zero(slots_.size())) {
+    std::transform(cuts.begin(), cuts.end(), edges_.begin(),
+                   [](const Cut& cut) { return cut.from(); });
+  }
 
+  /// The edge that a cut begins on.
+  [[nodiscard]] EdgeKey edge(std::uint32_t cut) const { return edges_[cut]; }
   /// False if another cut begins on the same edge.
   [[nodiscard]] bool insert(std::uint32_t cut) {
-    std::uint32_t& slot = slots_[slot_of(cuts_[cut].from())];
+    std::uint32_t& slot = slots_[slot_of(edges_[cut])];
     if (slot != kNone) return false;
     slot = cut;
     return true;
@@ -46,12 +54,12 @@ class CutsByEdge {
   /// The slot that holds the edge's cut, or the free one where it would stand.
   [[nodiscard]] std::size_t slot_of(EdgeKey edge) const {
     std::size_t slot = edge * 0x9E3779B97F4A7C15u >> shift_;
-    while (slots_[slot] != kNone && cuts_[slots_[slot]].from() != edge)
+    while (slots_[slot] != kNone && edges_[slots_[slot]] != edge)
       slot = (slot + 1) & (slots_.size() - 1);
     return slot;
   }
 
-  std::span<const Cut> cuts_;
+  LargeVector<EdgeKey> edges_;  // of each cut
   std::vector<std::uint32_t> slots_;
   int shift_;
 };
@@ -62,25 +70,30 @@ std::optional<std::vector<Ring>> chain_by_edges(std::span<const Cut> cuts, const
   CutsByEdge by_edge(cuts);
   for (std::uint32_t cut = 0; cut < cuts.size(); ++cut) {
     if (!by_edge.insert(cut)) return std::nullopt;
-    // Until they are needed, on the way around, they will have come.
+    // Until they are needed they will have come.
     __builtin_prefetch(&mesh.vertices[cuts[cut].alone].z);
     __builtin_prefetch(&mesh.vertices[cuts[cut].from_end].z);
   }
+  // What does not wait for the cut before, not on the way around.
+  LargeVector<std::uint32_t> next(cuts.size());
+  LargeVector<Point2> begin(cuts.size());
+  for (std::uint32_t cut = 0; cut < cuts.size(); ++cut) {
+    next[cut] = by_edge.find(cuts[cut].to());
+    begin[cut] = cut_point(mesh, by_edge.edge(cut), z_mm);
+  }
 
   std::vector<Ring> rings;
-  std::vector<bool> used(cuts.size());
-  std::vector<Point2> points;
+  LargeVector<Point2> points(cuts.size());
   for (std::uint32_t first = 0; first < cuts.size(); ++first) {
-    if (used[first]) continue;
-    points.clear();
+    if (next[first] == kUsed) continue;
+    std::size_t count = 0;
     std::uint32_t cut = first;
     do {
-      if (cut == kNone || used[cut]) return std::nullopt;
-      used[cut] = true;
-      points.push_back(cut_point(mesh, cuts[cut].from(), z_mm));
-      cut = by_edge.find(cuts[cut].to());
+      if (cut == kNone || next[cut] == kUsed) return std::nullopt;
+      points[count++] = begin[cut];
+      cut = std::exchange(next[cut], kUsed);
     } while (cut != first);
-    add_ring(points, rings);
+    add_ring(std::span(points).first(count), rings);
   }
   return rings;
 }

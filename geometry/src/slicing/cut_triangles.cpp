@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <string>
 #include <tuple>
 #include <utility>
 
 #include "model/blocks.hpp"
 #include "routebench/geometry/error.hpp"
-#include "routebench/geometry/grid.hpp"
 
 namespace routebench::slicing {
 namespace {
@@ -44,9 +42,8 @@ class LevelledMesh {
 
   [[nodiscard]] Span span(std::size_t triangle) const {
     const Triangle& corners = mesh_.triangles[triangle];
-    const auto [first, last] =
-        std::minmax({levels_[corners[0]], levels_[corners[1]], levels_[corners[2]]});
-    return {first, last};
+    const int a = levels_[corners[0]], b = levels_[corners[1]], c = levels_[corners[2]];
+    return {std::min(std::min(a, b), c), std::max(std::max(a, b), c)};
   }
 
   /// The cut of a triangle by a plane that it crosses. Going round the triangle, exactly one edge
@@ -54,16 +51,21 @@ class LevelledMesh {
   /// counter-clockwise, so the line from the first to the second has the material on its left.
   [[nodiscard]] Cut cut(std::size_t triangle, int plane) const {
     const Triangle& corners = mesh_.triangles[triangle];
-    const auto above = [&](std::size_t corner) { return levels_[corners[corner]] > plane; };
-    const bool a = above(0), b = above(1), c = above(2);
-    const std::size_t alone = b == c ? 0 : a == c ? 1 : 2;
-    const std::size_t next = kNext[alone], last = kNext[next];
-    return above(alone) ? Cut{corners[alone], corners[next], corners[last]}
-                        : Cut{corners[alone], corners[last], corners[next]};
+    const auto above = [&](std::size_t corner) {
+      return static_cast<std::size_t>(levels_[corners[corner]] > plane);
+    };
+    const Ends& ends = kEnds[above(0) | above(1) << 1U | above(2) << 2U];
+    return {corners[ends.alone], corners[ends.from], corners[ends.to]};
   }
 
  private:
-  static constexpr std::array<std::size_t, 3> kNext{1, 2, 0};
+  /// Corners of a triangle: a cut's alone, from_end and to_end.
+  struct Ends {
+    std::uint8_t alone, from, to;
+  };
+  /// By the corners that are above the plane: 1, 2, 4. Of 0 and 7 there is no cut.
+  static constexpr std::array<Ends, 8> kEnds{
+      {{0, 0, 0}, {0, 1, 2}, {1, 2, 0}, {2, 1, 0}, {2, 0, 1}, {1, 0, 2}, {0, 2, 1}, {0, 0, 0}}};
 
   const Mesh& mesh_;
   std::size_t planes_;
@@ -203,15 +205,6 @@ int Planes::level(double z_mm) const noexcept {
   while (level > 0 && this->z_mm(level - 1) > z_mm) --level;
   while (level < count && this->z_mm(level) <= z_mm) ++level;
   return level;
-}
-
-Point2 cut_point(const Mesh& mesh, EdgeKey edge, double z_mm) {
-  const Point3* lower = &mesh.vertices[edge >> 32];
-  const Point3* upper = &mesh.vertices[edge & std::numeric_limits<std::uint32_t>::max()];
-  if (lower->z > upper->z) std::swap(lower, upper);
-  const double share = (z_mm - lower->z) / (upper->z - lower->z);
-  return snap(
-      Point2{lower->x + share * (upper->x - lower->x), lower->y + share * (upper->y - lower->y)});
 }
 
 CutTable cut_triangles(const Mesh& mesh, const Planes& planes, SliceMethod method,

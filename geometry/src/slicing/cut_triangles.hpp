@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "large_vector.hpp"
+#include "routebench/geometry/grid.hpp"
 #include "routebench/geometry/parallel.hpp"
 #include "routebench/geometry/slice.hpp"
 #include "routebench/geometry/types.hpp"
@@ -31,7 +32,9 @@ struct Planes {
 using EdgeKey = std::uint64_t;
 
 [[nodiscard]] constexpr EdgeKey edge_key(std::uint32_t v, std::uint32_t w) noexcept {
-  return v < w ? EdgeKey{v} << 32 | w : EdgeKey{w} << 32 | v;
+  // Calculated, since nobody could foresee a branch.
+  const std::uint32_t lower = w ^ ((v ^ w) & (0U - static_cast<std::uint32_t>(v < w)));
+  return EdgeKey{lower} << 32U | (v ^ w ^ lower);
 }
 
 /// Where one triangle meets one plane: a straight line from one edge to another, the material on
@@ -58,7 +61,15 @@ struct CutTable {
 
 /// Where an edge that crosses the plane at z_mm meets it, on the grid. It depends on the
 /// coordinates of the edge's ends alone, so all triangles at an edge find the same point.
-[[nodiscard]] Point2 cut_point(const Mesh& mesh, EdgeKey edge, double z_mm);
+[[nodiscard]] inline Point2 cut_point(const Mesh& mesh, EdgeKey edge, double z_mm) noexcept {
+  // Without a branch, too.
+  const auto v = static_cast<std::uint32_t>(edge >> 32U), w = static_cast<std::uint32_t>(edge);
+  const bool falls = mesh.vertices[v].z > mesh.vertices[w].z;
+  const std::uint32_t change = (v ^ w) & (0U - static_cast<std::uint32_t>(falls));
+  const Point3 &lower = mesh.vertices[v ^ change], &upper = mesh.vertices[w ^ change];
+  const double share = (z_mm - lower.z) / (upper.z - lower.z);
+  return snap(Point2{lower.x + share * (upper.x - lower.x), lower.y + share * (upper.y - lower.y)});
+}
 
 /// Cuts all triangles by all planes. The order of cuts within a layer depends on the method.
 /// Throws Error{kBadInput} naming the model where there are more cuts than memory should be spent

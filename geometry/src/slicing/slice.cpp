@@ -58,38 +58,67 @@ std::string counted(std::size_t count, const std::string& noun) {
   return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
 }
 
-void check_vertex(const Mesh& mesh, std::size_t v, const std::string& model_name) {
-  const Point3& p = mesh.vertices[v];
+bool is_within(const Point3& p) noexcept {
   // Written so that NaN fails too.
-  if (!(std::abs(p.x) <= kMaxCoordinateMm && std::abs(p.y) <= kMaxCoordinateMm &&
-        std::abs(p.z) <= kMaxCoordinateMm))
-    refuse(model_name, "vertex " + std::to_string(v) + " at x = " + text(p.x) +
-                           ", y = " + text(p.y) + ", z = " + text(p.z) +
-                           " mm: coordinates must be numbers of at most 1000 m");
+  return std::abs(p.x) <= kMaxCoordinateMm && std::abs(p.y) <= kMaxCoordinateMm &&
+         std::abs(p.z) <= kMaxCoordinateMm;
+}
+
+/// Refuses vertices that lie nowhere, and returns the first of the highest ones.
+std::size_t checked_highest(const std::vector<Point3>& vertices, const std::string& model_name,
+                            const ParallelFor& parallel_for) {
+  std::vector<std::size_t> highest(models::block_count(vertices.size()));
+  const auto check = [&](std::size_t block, std::size_t begin, std::size_t end) {
+    std::size_t top = begin;
+    for (std::size_t v = begin; v < end; ++v) {
+      const Point3& p = vertices[v];
+      if (!is_within(p))
+        refuse(model_name, "vertex " + std::to_string(v) + " at x = " + text(p.x) +
+                               ", y = " + text(p.y) + ", z = " + text(p.z) +
+                               " mm: coordinates must be numbers of at most 1000 m");
+      if (p.z > vertices[top].z) top = v;
+    }
+    highest[block] = top;
+  };
+  models::for_each_block(vertices.size(), parallel_for, check);
+  const auto is_lower = [&](std::size_t a, std::size_t b) { return vertices[a].z < vertices[b].z; };
+  return highest.empty() ? 0 : *std::max_element(highest.begin(), highest.end(), is_lower);
+}
+
+/// Refuses a triangle that names a vertex which is not there.
+void refuse_wrong_corner(const Mesh& mesh, std::size_t triangle, const std::string& model_name) {
+  for (const std::uint32_t corner : mesh.triangles[triangle])
+    if (corner >= mesh.vertices.size())
+      refuse(model_name, "triangle " + std::to_string(triangle) + " names vertex " +
+                             std::to_string(corner) + ", but there are only " +
+                             std::to_string(mesh.vertices.size()));
 }
 
 /// Returns the height of the highest vertex that belongs to a triangle; at least 0.
 double checked_top_mm(const Mesh& mesh, const std::string& model_name,
                       const ParallelFor& parallel_for) {
-  const auto check = [&](std::size_t, std::size_t begin, std::size_t end) {
-    for (std::size_t v = begin; v < end; ++v) check_vertex(mesh, v, model_name);
-  };
-  models::for_each_block(mesh.vertices.size(), parallel_for, check);
-  std::vector<double> tops_mm(models::block_count(mesh.triangles.size()) + 1);
-  const auto find_top = [&](std::size_t block, std::size_t begin, std::size_t end) {
-    double top_mm = 0;
+  const std::size_t highest = checked_highest(mesh.vertices, model_name, parallel_for);
+  std::vector<std::uint8_t> has_highest(models::block_count(mesh.triangles.size()));
+  const auto check = [&](std::size_t block, std::size_t begin, std::size_t end) {
+    // Several corners at a time; where a triangle is wrong matters only if one is.
+    std::uint32_t last = 0;
+    unsigned found = 0;
     for (std::size_t t = begin; t < end; ++t)
       for (const std::uint32_t corner : mesh.triangles[t]) {
-        if (corner >= mesh.vertices.size())
-          refuse(model_name, "triangle " + std::to_string(t) + " names vertex " +
-                                 std::to_string(corner) + ", but there are only " +
-                                 std::to_string(mesh.vertices.size()));
-        top_mm = std::max(top_mm, mesh.vertices[corner].z);
+        last = std::max(last, corner);
+        found |= static_cast<unsigned>(corner == highest);
       }
-    tops_mm[block] = top_mm;
+    for (std::size_t t = begin; last >= mesh.vertices.size() && t < end; ++t)
+      refuse_wrong_corner(mesh, t, model_name);
+    has_highest[block] = static_cast<std::uint8_t>(found);
   };
-  models::for_each_block(mesh.triangles.size(), parallel_for, find_top);
-  return *std::max_element(tops_mm.begin(), tops_mm.end());
+  models::for_each_block(mesh.triangles.size(), parallel_for, check);
+  double top_mm = 0;
+  if (std::find(has_highest.begin(), has_highest.end(), 1) != has_highest.end())
+    return std::max(top_mm, mesh.vertices[highest].z);
+  for (const auto& triangle : mesh.triangles)
+    for (const std::uint32_t corner : triangle) top_mm = std::max(top_mm, mesh.vertices[corner].z);
+  return top_mm;
 }
 
 void check_options(const SliceOptions& options) {
