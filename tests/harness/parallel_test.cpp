@@ -1,9 +1,12 @@
 #include "routebench/harness/parallel.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <stdexcept>
+#include <thread>
 #include <vector>
 
 namespace routebench {
@@ -32,6 +35,60 @@ TEST(ParallelLoop, ReportsTheLowestItemsFailureWhateverTheTiming) {
 
 TEST(ParallelLoop, NothingToDoIsDone) {
   parallel_loop(3)(0, [](std::size_t) { FAIL(); });
+}
+
+TEST(ParallelLoop, CanBeCalledAgainAndWithinItself) {
+  const ParallelFor parallel_for = parallel_loop(3);
+  for (int round = 0; round < 200; ++round) {
+    std::vector<std::atomic<int>> runs(64);
+    parallel_for(
+        8, [&](std::size_t i) { parallel_for(8, [&](std::size_t k) { ++runs[8 * i + k]; }); });
+    for (const auto& count : runs) EXPECT_EQ(count, 1);
+  }
+}
+
+TEST(ParallelLoop, ServesSeveralThreadsAtOnce) {
+  const ParallelFor parallel_for = parallel_loop(3);
+  std::vector<std::atomic<int>> runs(4000);
+  {
+    std::vector<std::jthread> callers;
+    for (std::size_t caller = 0; caller < 4; ++caller)
+      callers.emplace_back([&, caller] {
+        for (std::size_t round = 0; round < 10; ++round)
+          parallel_for(100, [&](std::size_t i) { ++runs[1000 * caller + 100 * round + i]; });
+      });
+  }
+  for (const auto& count : runs) EXPECT_EQ(count, 1);
+}
+
+TEST(ParallelLoop, IsAPlainLoopInAFork) {
+  const ParallelFor parallel_for = parallel_loop(3);
+  parallel_for(10, [](std::size_t) {});  // its threads have begun
+  const pid_t child = ::fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    std::size_t sum = 0;
+    {
+      const ParallelFor copy = parallel_for;
+      copy(10, [&](std::size_t i) { sum += i; });
+    }
+    ::_exit(sum == 45 ? 0 : 1);
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  EXPECT_EQ(status, 0);
+}
+
+TEST(ParallelLoop, TakesSeveralThreads) {
+  const ParallelFor parallel_for = parallel_loop(2);
+  // Each of two items waits for the other one to begin.
+  std::atomic<int> begun{0};
+  parallel_for(2, [&](std::size_t) {
+    ++begun;
+    begun.notify_all();
+    for (int seen = begun; seen < 2; seen = begun) begun.wait(seen);
+  });
+  EXPECT_EQ(begun, 2);
 }
 
 }  // namespace
