@@ -11,7 +11,6 @@
 #include "routebench/geometry/region.hpp"
 #include "routebench/geometry/simplify.hpp"
 #include "routebench/geometry/vec.hpp"
-#include "routebench/planning/ring_path.hpp"
 #include "routebench/planning/walls.hpp"
 
 namespace routebench {

@@ -212,16 +212,16 @@ void trim_free_ends(MiddleLine& line) {
 }  // namespace
 
 Room::Room(const TakenSides& sides, const Box2& places, double farthest_mm) {
-  const auto like = [&](std::size_t ring) {
-    return std::find_if(sides_.begin(), sides_.end(),
-                        [&](const Side& side) { return side.taken_mm == sides.taken_mm[ring]; });
-  };
   for (std::size_t i = 0; i < sides.rings.size(); ++i) {
-    if (like(i) == sides_.end()) sides_.push_back({sides.taken_mm[i], {}, std::nullopt});
+    const auto known = std::find_if(sides_.begin(), sides_.end(), [&](const Side& side) {
+      return side.taken_mm == sides.taken_mm[i];
+    });
+    Side& side = known != sides_.end()
+                     ? *known
+                     : sides_.emplace_back(Side{sides.taken_mm[i], {}, std::nullopt});
     const double reach_mm = sides.taken_mm[i] + farthest_mm;
     const Point2 lower = places.lower - Point2{reach_mm, reach_mm};
     const Point2 upper = places.upper + Point2{reach_mm, reach_mm};
-    Side& side = *like(i);
     Point2 a = sides.rings[i].back();
     for (const Point2 b : sides.rings[i]) {
       if (std::max(a.x, b.x) >= lower.x && std::min(a.x, b.x) <= upper.x &&

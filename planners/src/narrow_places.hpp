@@ -10,8 +10,9 @@ namespace routebench {
 
 /// Boxes around all places at which an area's inset may not grow back to the area, because a part
 /// is narrower than twice the distance. Every ring of the area is followed on the inset: where that
-/// is farther away than the distance and the corner there let one expect, there is doubt. Takes
-/// polygons, offset(area, -distance_mm), how much farther than expected the inset may be
+/// is farther away than the distance and the corner there let one expect, there is doubt.
+///
+/// Takes   polygons, offset(area, -distance_mm), how much farther than expected the inset may be
 ///         (the depth of stubs of no interest, or for little of it half its square over the
 ///         distance; offsets are true to 5 um), and by how much boxes reach beyond such places.
 /// Returns disjoint boxes; none is a proof that nothing was lost.
