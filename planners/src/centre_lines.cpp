@@ -297,14 +297,16 @@ std::vector<Stroke> centre_lines(TakenSides sides, const CentreLineRule& rule,
   const double inwards_mm = std::max(rule.min_width_mm / 2 - kCoreMm, 0.0);
   std::vector<double> distances_mm;
   for (const double taken_mm : sides.taken_mm) distances_mm.push_back(-taken_mm - inwards_mm);
-  for (const Polygon& core : offset_boundary(sides.rings, distances_mm)) {
+  const Polygons cores = offset_boundary(sides.rings, distances_mm);
+  Rooms rooms(sides, cores.size());
+  for (const Polygon& core : cores) {
     stop_if_asked(context);
     const Box2 box = bounding_box({core});
     const double extent_mm = distance(box.lower, box.upper) + 2 * inwards_mm;
     if (extent_mm < std::min(rule.min_length_mm, rule.min_dot_mm)) continue;
     // Beads are as wide as the sides let them be, not those of the core, and may reach beyond it.
     const Point2 beyond{rule.max_width_mm, rule.max_width_mm};
-    const Room room(sides, {box.lower - beyond, box.upper + beyond}, rule.max_width_mm);
+    const Room& room = rooms.around({box.lower - beyond, box.upper + beyond}, rule.max_width_mm);
     StrokeCutter cutter(rule, room, origin, strokes);
     const std::size_t before = strokes.size();
     if (!cutter.cut_compact(core, inwards_mm))

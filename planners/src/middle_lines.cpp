@@ -23,6 +23,7 @@ constexpr double kWiderMm = 0.01;  // less is not wider
 constexpr double kLeastStepMm = 0.05;
 // To look at fewer takes less time than to put them into a grid.
 constexpr std::size_t kFewEdges = 64;
+constexpr std::size_t kFewParts = 8;
 constexpr int kBendSteps = 12;  // in which the way round a bend is sought
 
 /// The axis of one polygon while spurs are taken from it.
@@ -211,33 +212,60 @@ void trim_free_ends(MiddleLine& line) {
 
 }  // namespace
 
-Room::Room(const TakenSides& sides, const Box2& places, double farthest_mm) {
-  for (std::size_t i = 0; i < sides.rings.size(); ++i) {
-    const auto known = std::find_if(sides_.begin(), sides_.end(), [&](const Side& side) {
-      return side.taken_mm == sides.taken_mm[i];
-    });
-    Side& side = known != sides_.end()
-                     ? *known
-                     : sides_.emplace_back(Side{sides.taken_mm[i], {}, std::nullopt});
-    const double reach_mm = sides.taken_mm[i] + farthest_mm;
+namespace {
+
+/// The one of sides along which so much is taken.
+Room::Side& side_with(double taken_mm, std::vector<Room::Side>& sides) {
+  const auto known = std::find_if(sides.begin(), sides.end(), [&](const Room::Side& side) {
+    return side.taken_mm == taken_mm;
+  });
+  return known != sides.end() ? *known : sides.emplace_back(Room::Side{taken_mm, {}, std::nullopt});
+}
+
+/// The edges that come near the places.
+std::vector<Room::Side> edges_near(const Box2& places, double farthest_mm,
+                                   const TakenSides& taken) {
+  std::vector<Room::Side> sides;
+  for (std::size_t i = 0; i < taken.rings.size(); ++i) {
+    Room::Side& side = side_with(taken.taken_mm[i], sides);
+    const double reach_mm = taken.taken_mm[i] + farthest_mm;
     const Point2 lower = places.lower - Point2{reach_mm, reach_mm};
     const Point2 upper = places.upper + Point2{reach_mm, reach_mm};
-    Point2 a = sides.rings[i].back();
-    for (const Point2 b : sides.rings[i]) {
+    Point2 a = taken.rings[i].back();
+    for (const Point2 b : taken.rings[i]) {
       if (std::max(a.x, b.x) >= lower.x && std::min(a.x, b.x) <= upper.x &&
           std::max(a.y, b.y) >= lower.y && std::min(a.y, b.y) <= upper.y)
         side.edges.emplace_back(a, b);
       a = b;
     }
   }
-  for (Side& side : sides_) {
-    if (side.edges.size() <= kFewEdges) continue;
+  return sides;
+}
+
+std::vector<Room::Side> in_grids(const TakenSides& taken) {
+  std::vector<Room::Side> sides;
+  for (const double taken_mm : taken.taken_mm) side_with(taken_mm, sides);
+  for (Room::Side& side : sides) {
     Polygons outlines;  // the grid is asked for distances only
-    for (std::size_t i = 0; i < sides.rings.size(); ++i)
-      if (sides.taken_mm[i] == side.taken_mm) outlines.push_back({sides.rings[i], {}});
+    for (std::size_t i = 0; i < taken.rings.size(); ++i)
+      if (taken.taken_mm[i] == side.taken_mm) outlines.push_back({taken.rings[i], {}});
     side.grid.emplace(outlines);
-    side.edges.clear();
   }
+  return sides;
+}
+
+}  // namespace
+
+Rooms::Rooms(const TakenSides& sides, std::size_t parts)
+    : sides_(sides), are_few_(parts <= kFewParts) {}
+
+const Room& Rooms::around(const Box2& places, double farthest_mm) {
+  if (are_few_) {
+    std::vector<Room::Side> sides = edges_near(places, farthest_mm, sides_);
+    const auto is_short = [](const Room::Side& side) { return side.edges.size() <= kFewEdges; };
+    if (std::all_of(sides.begin(), sides.end(), is_short)) return near_.emplace(std::move(sides));
+  }
+  return everywhere_ ? *everywhere_ : everywhere_.emplace(in_grids(sides_));
 }
 
 std::optional<double> Room::radius_mm(Point2 p, double limit_mm) const {

@@ -15,22 +15,38 @@ namespace routebench {
 /// How far places in a narrow part are from what is taken along its sides.
 class Room {
  public:
-  /// Takes  a box around all places that will be asked for, and the greatest radius of interest.
-  /// Cost   linear in edges.
-  Room(const TakenSides& sides, const Box2& places, double farthest_mm);
+  /// Edges along which as much is taken: in a list if they are few, else in a grid.
+  struct Side {
+    double taken_mm;
+    std::vector<std::pair<Point2, Point2>> edges;
+    std::optional<EdgeGrid> grid;
+  };
 
-  /// Nothing if it is more than limit_mm, which is not beyond the greatest of interest.
+  explicit Room(std::vector<Side> sides) : sides_(std::move(sides)) {}
+
+  /// Nothing if it is more than limit_mm, which is not beyond what the room was made for.
   [[nodiscard]] std::optional<double> radius_mm(Point2 p, double limit_mm) const;
 
  private:
-  /// Edges along which as much is taken.
-  struct Side {
-    double taken_mm;
-    std::vector<std::pair<Point2, Point2>> edges;  // near the places, if they are few
-    std::optional<EdgeGrid> grid;                  // else
-  };
-
   std::vector<Side> sides_;
+};
+
+/// The rooms of many parts between the same sides.
+class Rooms {
+ public:
+  /// Takes  sides that outlive it, and for how many parts it will be asked.
+  Rooms(const TakenSides& sides, std::size_t parts);
+
+  /// The room of one part, until the next one is asked for.
+  /// Takes  a box around all places that will be asked for, and the greatest radius of interest.
+  /// Cost   linear in all edges for each of a few parts; of many parts, once for all of them.
+  [[nodiscard]] const Room& around(const Box2& places, double farthest_mm);
+
+ private:
+  const TakenSides& sides_;
+  bool are_few_;
+  std::optional<Room> near_;
+  std::optional<Room> everywhere_;  // once it is needed
 };
 
 /// A line along the middle, with the radius of the room at each point.
