@@ -79,8 +79,9 @@ std::string fault_of(const Route& route) {
 /// Puts one layer's route together, call by call.
 class LayerAssembly {
  public:
-  LayerAssembly(const Layer& layer, const Task& task, PlanContext context, PlanMemo* memo)
-      : layer_(layer), task_(task), context_(std::move(context)), memo_(memo) {}
+  LayerAssembly(const Layer& layer, const Task& task, PlanContext context, PlanMemo* memo,
+                bool timed)
+      : layer_(layer), task_(task), context_(std::move(context)), memo_(memo), timed_(timed) {}
 
   /// Has one planner lay a region from where the nozzle is, and appends its route.
   void lay(const Planner* planner, const std::string& name, int repeats_every, StrokeKind kind,
@@ -122,6 +123,7 @@ class LayerAssembly {
 
   Route plan_part(const Planner& planner, const std::string& name, const Layer& part) {
     try {
+      if (!timed_) return planner.plan(part, context_);
       PlanTime time;
       Route route = timed_plan(planner, part, context_, time);
       planned_.plan_wall_ns += time.wall_ns;
@@ -152,6 +154,7 @@ class LayerAssembly {
   const Task& task_;
   PlanContext context_;
   PlanMemo* memo_;
+  bool timed_;
   PlannedLayer planned_;
 };
 
@@ -207,7 +210,7 @@ double Contender::peak_rss_bytes() const {
 
 PlannedLayer Contender::plan(const Layer& layer, const Demand& demand, const Task& task,
                              Point2 origin, std::uint64_t seed, std::stop_token stop,
-                             PlanMemo* memo) const {
+                             PlanMemo* memo, bool timed) const {
   PlanContext context;
   context.start = task.start_mm;
   context.origin = origin;
@@ -216,7 +219,7 @@ PlannedLayer Contender::plan(const Layer& layer, const Demand& demand, const Tas
   context.perimeters = task.perimeters;
   context.seed = mixed_seed(seed, layer.index);
   context.stop = std::move(stop);
-  LayerAssembly assembly(layer, task, std::move(context), memo);
+  LayerAssembly assembly(layer, task, std::move(context), memo, timed);
 
   const std::string shell_name = spec_.shell ? spec_.shell->planner : std::string();
   const std::string fill_name = spec_.fill ? spec_.fill->planner : std::string();

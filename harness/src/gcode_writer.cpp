@@ -101,38 +101,49 @@ GcodeWriter::GcodeWriter(std::ostream& out, const Task& task, const Printer& pri
 
 void GcodeWriter::write_layers(std::span<const RoutedLayer> layers,
                                const ParallelFor& parallel_for) {
-  // Some layers are formatted at the same time as those before them are written.
-  constexpr std::size_t kLayersTogether = 16;
-  std::vector<LayerText> ready;
-  const auto write_ready = [this, &ready] {
-    for (const LayerText& text : ready) text.write(out_);
-  };
-  PartTexts known;
-  const Polygons* outline = nullptr;  // of the layer before
-  while (!layers.empty()) {
-    const std::span<const RoutedLayer> together =
-        layers.first(std::min(kLayersTogether, layers.size()));
-    layers = layers.subspan(together.size());
+  struct Batch {
     std::vector<LayerText> texts;
     std::vector<std::size_t> makers;  // of texts that others copy
+  };
+  constexpr std::size_t kLayersTogether = 16;
+  PartTexts known;
+  const Polygons* outline = nullptr;  // of the layer before
+  const auto take_batch = [&] {
+    Batch batch;
+    const auto together = layers.first(std::min(kLayersTogether, layers.size()));
+    layers = layers.subspan(together.size());
+    batch.texts.reserve(together.size());
     for (const auto& [layer, planned] : together) {
       if (planned->route.strokes.empty()) continue;
       if (outline != nullptr && *outline != layer->polygons) known.clear();
       outline = &layer->polygons;
       std::vector<LayerPart> parts = parts_of(*planned, printer_, *dialect_, known);
-      if (std::ranges::any_of(parts, &LayerPart::makes_text)) makers.push_back(texts.size());
+      if (std::ranges::any_of(parts, &LayerPart::makes_text))
+        batch.makers.push_back(batch.texts.size());
       const GcodeProgress before = progress_;
       go_on_by(*layer, parts);
-      texts.emplace_back(task_, printer_, *dialect_, before, *layer, std::move(parts));
+      batch.texts.emplace_back(task_, printer_, *dialect_, before, *layer, std::move(parts));
     }
-    parallel_for(makers.size(), [&](std::size_t i) { texts[makers[i]].make_part_texts(); });
-    parallel_for(texts.size() + 1, [&](std::size_t item) {
-      if (item == 0) return write_ready();
-      texts[item - 1].format();
+    return batch;
+  };
+  const auto write_all = [this](const Batch& batch) {
+    for (const LayerText& text : batch.texts) text.write(out_);
+  };
+  // Some layers are formatted at the same time as those before them are written and those after
+  // them are gone through.
+  Batch before, now = take_batch();
+  while (!now.texts.empty() || !layers.empty()) {
+    parallel_for(now.makers.size(),
+                 [&](std::size_t i) { now.texts[now.makers[i]].make_part_texts(); });
+    Batch after;
+    parallel_for(now.texts.size() + 2, [&](std::size_t item) {
+      if (item == 0) return write_all(before);
+      if (item == 1) return void(after = take_batch());
+      now.texts[item - 2].format();
     });
-    ready = std::move(texts);
+    before = std::exchange(now, std::move(after));
   }
-  write_ready();
+  write_all(before);
 }
 
 void GcodeWriter::go_on_by(const Layer& layer, std::span<const LayerPart> parts) {

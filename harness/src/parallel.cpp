@@ -1,5 +1,7 @@
 #include "routebench/harness/parallel.hpp"
 
+#include <pthread.h>
+#include <sched.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -15,8 +17,7 @@
 namespace routebench {
 namespace {
 
-/// Threads that sleep until there is work. They are kept, because a new thread may be left waiting
-/// on the processor of the one that made it, for milliseconds, while others are idle.
+/// Threads that sleep until there is work.
 class Workers {
  public:
   Workers() = default;
@@ -37,10 +38,9 @@ class Workers {
   void run(std::size_t others, const std::function<void()>& work) {
     const std::unique_lock use(in_use_, std::try_to_lock);
     if (!use || !is_owner()) return work();
-    std::unique_lock lock(mutex_);
     while (threads_.size() < others) threads_.emplace_back([this] { wait_for_work(); });
-    // A thread that sleeps is woken where there is nothing to do, but a new one has to begin first.
-    done_.wait(lock, [this] { return begun_ == threads_.size(); });
+    let_none_wake_here();
+    std::unique_lock lock(mutex_);
     work_ = &work;
     places_ = others;
     lock.unlock();
@@ -57,8 +57,6 @@ class Workers {
  private:
   void wait_for_work() {
     std::unique_lock lock(mutex_);
-    ++begun_;
-    done_.notify_one();
     while (true) {
       wake_.wait(lock, [this] { return is_over_ || places_ > 0; });
       if (is_over_) return;
@@ -66,18 +64,43 @@ class Workers {
       ++at_work_;
       const std::function<void()>& work = *work_;
       lock.unlock();
+      run_anywhere();
       work();
       lock.lock();
       if (--at_work_ == 0) done_.notify_one();
     }
   }
 
+  /// Has the threads wake on other processors than that of this one, if there are any. A virtual
+  /// machine may take a processor that sleeps for a busy one; then a thread that begins or wakes
+  /// here would wait here for milliseconds.
+  void let_none_wake_here() {
+    const int here = ::sched_getcpu();
+    if (here < 0 || CPU_COUNT(&processors_) < 2) return;
+    cpu_set_t others = processors_;
+    CPU_CLR(static_cast<std::size_t>(here), &others);
+    for (std::jthread& thread : threads_)
+      ::pthread_setaffinity_np(thread.native_handle(), sizeof others, &others);
+  }
+
+  /// Once awake a thread, and what it starts, may go where it likes.
+  void run_anywhere() const {
+    if (CPU_COUNT(&processors_) >= 2) ::sched_setaffinity(0, sizeof processors_, &processors_);
+  }
+
+  /// Those that the process may use; none if they cannot be told.
+  static cpu_set_t usable_processors() {
+    cpu_set_t processors;
+    if (::sched_getaffinity(0, sizeof processors, &processors) != 0) CPU_ZERO(&processors);
+    return processors;
+  }
+
   const pid_t owner_ = ::getpid();
+  const cpu_set_t processors_ = usable_processors();
   std::mutex in_use_;
   std::mutex mutex_;  // of all below
   std::condition_variable wake_, done_;
   const std::function<void()>* work_ = nullptr;
-  std::size_t begun_ = 0;   // threads
   std::size_t places_ = 0;  // workers that may still take part
   std::size_t at_work_ = 0;
   bool is_over_ = false;

@@ -245,7 +245,7 @@ std::vector<PlannedLayer> plan_layers(const Contender& contender, const Prepared
     const std::size_t i = order[place];
     planned[i] =
         contender.plan(layers[chosen[i]], model.demands[chosen[i]], task, model.sliced.origin, seed,
-                       stop, has_equals(chosen[i]) ? &memo : nullptr);
+                       stop, has_equals(chosen[i]) ? &memo : nullptr, repeats == Repeats::kPlan);
   });
   return planned;
 }

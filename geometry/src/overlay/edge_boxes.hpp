@@ -60,6 +60,34 @@ class EdgeBoxes {
         visit_bits(groups_[first / 8].meeting(box), first, eights, look_at);
   }
 
+  /// Calls visit(edge, other) for each two whose boxes meet, the other before the edge.
+  /// Cost  of few edges, that of visit_meeting() for each; else about a third.
+  template <typename Visit>
+  void visit_meeting_pairs(std::uint32_t edges, Visit&& visit) const {
+    if (groups_.empty()) {
+      for (std::uint32_t edge = 0; edge < edges; ++edge)
+        visit_meeting((*this)[edge], edge, [&](std::uint32_t other) { visit(edge, other); });
+      return;
+    }
+    const auto box_of_eight = [&](std::uint32_t eight) {
+      return groups_[eight / 8].box(eight % 8);
+    };
+    // Only edges that meet the box around eight others look at those.
+    const auto look_at = [&](std::uint32_t eight, std::uint32_t other) {
+      visit_bits(eights_[eight].meeting(box_of_eight(other)), 8 * eight, edges,
+                 [&](std::uint32_t edge) {
+                   visit_bits(eights_[other].meeting((*this)[edge]), 8 * other, edge,
+                              [&](std::uint32_t before) { visit(edge, before); });
+                 });
+    };
+    for (std::uint32_t eight = 0; 8 * eight < edges; ++eight) {
+      const GridBox box = box_of_eight(eight);
+      for (std::uint32_t first = 0; first <= eight; first += 8)
+        visit_bits(groups_[first / 8].meeting(box), first, eight + 1,
+                   [&](std::uint32_t other) { look_at(eight, other); });
+    }
+  }
+
  private:
   static constexpr std::uint32_t kFewEdges = 64;
 

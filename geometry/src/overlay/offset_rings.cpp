@@ -97,7 +97,12 @@ class MovedBoundary {
   /// there was such an edge.
   bool drop_used_edges() {
     const std::size_t n = corners_.size();
-    if (n < 4) return false;
+    const auto may_go = [&](std::size_t i) {
+      return i + 1 < n && edges_[i].left < 0 && edges_[i].used > 0 && edges_[i + 1].used > 0;
+    };
+    std::size_t first = 0;
+    while (first < n && !may_go(first)) ++first;
+    if (n < 4 || first == n) return false;
     kept_.clear();
     kept_.reserve(n);
     bool dropped = false;
@@ -108,11 +113,8 @@ class MovedBoundary {
       if (kept_.empty() || !are_one(kept_.back(), p)) kept_.push_back(p);
     };
     for (std::size_t i = 0; i < n; ++i) {
-      const std::size_t next = i + 1 < n ? i + 1 : 0, before = i > 0 ? i - 1 : n - 1;
-      const bool may_go =
-          edges_[i].left < 0 && edges_[i].used > 0 && edges_[next].used > 0 && next != 0;
-      if (may_go) {
-        if (const std::optional<Vector> meeting = meeting_of(before, next)) {
+      if (may_go(i)) {
+        if (const auto meeting = meeting_of(i > 0 ? i - 1 : n - 1, i + 1)) {
           keep(*meeting);
           dropped = true;
           ++i;  // both ends are replaced

@@ -44,15 +44,14 @@ PlanarEdges::PlanarEdges(const GridRings& rings, Unmet)
 }
 
 PlanarEdges::PlanarEdges(const GridRings& rings) : PlanarEdges(rings, Unmet()) {
-  for (std::uint32_t ring = 0; ring < this->rings(); ++ring) {
-    const std::uint32_t begin = rings_.begin(ring), end = rings_.end(ring);
-    for (std::uint32_t e = begin; e < end; ++e) {
-      const std::uint32_t others = e > begin ? e - 1 : e;  // the one before is its neighbour
-      visit_near(e, others, [&](std::uint32_t f) {
-        if (!are_neighbours(e, f)) look(e, f);
-      });
-    }
-  }
+  const auto look_at = [this](std::uint32_t e, std::uint32_t f) {
+    if (!are_neighbours(e, f)) look(e, f);
+  };
+  if (cells_)
+    for (std::uint32_t e = 0; e < size(); ++e)
+      visit_near(e, e, [&](std::uint32_t f) { look_at(e, f); });
+  else
+    boxes_.visit_meeting_pairs(size(), look_at);
   cut_until_planar();
 }
 

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -118,6 +119,8 @@ class Plan {
     } else {
       print_table(std::cout);
     }
+    keep_until_exit(std::move(model_));
+    keep_until_exit(std::move(planned_));
     return !cell_ || cell_->verdict.outcome == Outcome::kValid ? 0 : kExitNotValid;
   }
 

@@ -88,7 +88,8 @@ class Contender {
   /// the strokes together in the contender's order.
   ///
   /// Takes  `origin`, which anchors patterns (lower corner of the model), and the seed of the whole
-  ///        run: each layer's planners get one that is mixed from it and the layer's index.
+  ///        run: each layer's planners get one that is mixed from it and the layer's index;
+  ///        whether to take times: of small islands the clock takes a fiftieth.
   /// Throws Error{kStopped} when asked to stop; Error{kBadInput} naming planner and layer if a
   ///        planner throws anything else, or returns a stroke of fewer than two points, a
   ///        coordinate that is not finite or a kilometre away, or a width that is
@@ -98,7 +99,7 @@ class Contender {
   ///        it knows from other layers of the same job cost no planning.
   [[nodiscard]] PlannedLayer plan(const Layer& layer, const Demand& demand, const Task& task,
                                   Point2 origin, std::uint64_t seed, std::stop_token stop,
-                                  PlanMemo* memo = nullptr) const;
+                                  PlanMemo* memo = nullptr, bool timed = true) const;
 
   /// The most memory that planning has taken so far: of this process, or of a planner's own process
   /// if that took more.

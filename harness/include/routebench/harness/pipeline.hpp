@@ -131,11 +131,12 @@ struct PreparedModel {
                                                              std::span<const std::size_t> chosen);
 
 /// Whether each region is planned for itself, or takes over the route of one that came in an equal
-/// layer, where its planner promises that its own would be equal (see PlannerInfo::repeats_every).
+/// layer, where its planner promises that its own would be equal (see PlannerInfo::repeats_every);
+/// then no times are taken.
 enum class Repeats { kPlan, kTakeOver };
 
 /// Plans the chosen layers. Times are those of each call to plan() alone; wall times are to be
-/// trusted only if no other thread competes, that is with serial_for; what is taken over has none.
+/// trusted only if no other thread competes, that is with serial_for.
 ///
 /// Takes   places in the model's layers, ascending.
 /// Returns one planned layer for each of them.
