@@ -47,11 +47,16 @@ class Cone {
   Cone(Point2 apex, double tolerance_mm) : apex_(apex), tolerance_mm_(tolerance_mm) {}
 
   /// Whether a side from the apex may end here.
-  [[nodiscard]] bool admits(Point2 p) const {
+  [[nodiscard]] bool admits(Point2 p) {
     const Point2 way = p - apex_;
     // What has been skipped must lie between the ends, so nothing may turn back.
-    return dot(way, way) >= squared_reach_ &&
-           (!is_narrowed_ || (cross(right_, way) >= 0 && cross(way, left_) >= 0));
+    if (dot(way, way) < squared_reach_) return false;
+    if (!is_narrowed_) return true;
+    if (!has_sides_) {
+      if (is_clear_of_first(way)) return false;
+      make_sides();
+    }
+    return cross(right_, way) >= 0 && cross(way, left_) >= 0;
   }
 
   /// From now on sides must pass this point, which the cone admits.
@@ -59,19 +64,46 @@ class Cone {
     const Point2 way = p - apex_;
     squared_reach_ = dot(way, way);
     if (squared_reach_ <= tolerance_mm_ * tolerance_mm_) return;  // near to any side
-    const Point2 aside = (tolerance_mm_ / std::sqrt(squared_reach_)) * Point2{-way.y, way.x};
-    const Point2 right = way - aside, left = way + aside;
-    if (!is_narrowed_ || cross(right_, right) > 0) right_ = right;
-    if (!is_narrowed_ || cross(left_, left) < 0) left_ = left;
-    is_narrowed_ = true;
+    if (!is_narrowed_) {
+      first_ = way;
+      is_narrowed_ = true;
+      return;
+    }
+    if (!has_sides_) make_sides();
+    const Point2 aside = aside_of(way), right = way - aside, left = way + aside;
+    if (cross(right_, right) > 0) right_ = right;
+    if (cross(left_, left) < 0) left_ = left;
   }
 
  private:
+  /// Across a way, as long as the tolerance.
+  [[nodiscard]] Point2 aside_of(Point2 way) const {
+    return (tolerance_mm_ / std::sqrt(dot(way, way))) * Point2{-way.y, way.x};
+  }
+
+  void make_sides() {
+    const Point2 aside = aside_of(first_);
+    right_ = first_ - aside;
+    left_ = first_ + aside;
+    has_sides_ = true;
+  }
+
+  /// Whether a way leaves the cone that the first point makes, and not just by rounding: as at most
+  /// corners, where it takes no root to tell.
+  [[nodiscard]] bool is_clear_of_first(Point2 way) const {
+    constexpr double kRounding = 1 + 1e-6;
+    const double along = dot(first_, way), across = cross(first_, way);
+    return along < 0 || across * across * dot(first_, first_) >
+                            kRounding * tolerance_mm_ * tolerance_mm_ * along * along;
+  }
+
   Point2 apex_;
   double tolerance_mm_;
   double squared_reach_ = 0;
   bool is_narrowed_ = false;
-  Point2 right_, left_;  ///< the cone's sides, once it is narrowed
+  bool has_sides_ = false;
+  Point2 first_;         ///< the way to the point that has narrowed the cone first
+  Point2 right_, left_;  ///< the cone's sides, once they are needed
 };
 
 /// A corner of the ring's hull. In a direction as odd as this one no side of a drawing is upright,

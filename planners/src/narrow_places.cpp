@@ -44,7 +44,7 @@ class Follower {
 
   /// Whether the edge where it is comes as near to p as that.
   [[nodiscard]] bool reaches(Point2 p, double within_squared) const {
-    return ring_ != nullptr && squared_to(p, edge_) <= within_squared;
+    return ring_ != nullptr && is_within(p, edge_, within_squared);
   }
 
   /// Whether the edge where it is, or the next one, comes as near as that to all between two
@@ -53,7 +53,7 @@ class Follower {
     if (ring_ == nullptr) return false;
     for (const std::size_t edge : {after(edge_, 1), edge_}) {
       // What is near a segment is convex.
-      if (squared_to(b, edge) > within_squared || squared_to(a, edge) > within_squared) continue;
+      if (!is_within(b, edge, within_squared) || !is_within(a, edge, within_squared)) continue;
       edge_ = edge;
       return true;
     }
@@ -109,6 +109,17 @@ class Follower {
  private:
   [[nodiscard]] double squared_to(Point2 p, std::size_t edge) const {
     return squared_distance(p, nearest_on_segment(p, (*ring_)[edge], (*ring_)[after(edge, 1)]));
+  }
+
+  /// The same without a division.
+  [[nodiscard]] bool is_within(Point2 p, std::size_t edge, double within_squared) const {
+    const Point2 from = (*ring_)[edge], to = (*ring_)[after(edge, 1)];
+    const Point2 way = to - from, at = p - from;
+    const double along = dot(at, way), length_squared = dot(way, way);
+    if (along <= 0) return dot(at, at) <= within_squared;
+    if (along >= length_squared) return squared_distance(p, to) <= within_squared;
+    const double across = cross(way, at);
+    return across * across <= within_squared * length_squared;
   }
 
   [[nodiscard]] std::size_t after(std::size_t edge, std::size_t ahead) const {
