@@ -27,6 +27,9 @@ class EdgeTree {
  public:
   EdgeTree(const Polygon& polygon, double width_mm, double apart_mm)
       : width2_(width_mm * width_mm), apart_mm_(apart_mm) {
+    std::size_t edges = polygon.outer.size();
+    for (const Ring& hole : polygon.holes) edges += hole.size();
+    edges_.reserve(edges);
     add(polygon.outer);
     for (const Ring& hole : polygon.holes) add(hole);
     const std::size_t needed = (edges_.size() + kLeafEdges - 1) / kLeafEdges;
