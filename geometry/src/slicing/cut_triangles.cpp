@@ -13,7 +13,7 @@ namespace routebench::slicing {
 namespace {
 
 constexpr std::size_t kMaxCuts = std::size_t{1} << 27;  // 1.5 GiB
-constexpr std::size_t kTrianglesPerBlock = std::size_t{1} << 16;
+constexpr std::size_t kTrianglesPerBlock = std::size_t{1} << 14;
 constexpr std::size_t kMaxBlockCursors = std::size_t{1} << 22;  // 32 MiB
 
 using Triangle = std::array<std::uint32_t, 3>;
@@ -78,7 +78,7 @@ class Blocks {
  public:
   Blocks(std::size_t triangles, std::size_t planes) : triangles_(triangles) {
     const std::size_t affordable = std::max<std::size_t>(1, kMaxBlockCursors / (planes + 1));
-    count_ = std::clamp<std::size_t>(triangles / kTrianglesPerBlock, 1, affordable);
+    count_ = std::clamp<std::size_t>((triangles + kTrianglesPerBlock - 1) / kTrianglesPerBlock, 1, affordable);
   }
   [[nodiscard]] std::size_t count() const { return count_; }
   [[nodiscard]] std::size_t begin(std::size_t block) const { return triangles_ * block / count_; }
