@@ -8,6 +8,7 @@
 #include <cstring>
 #include <memory_resource>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "overlay/edge_boxes.hpp"
@@ -69,10 +70,73 @@ TEST(EdgeBoxes, VisitsWhatMeetsByDefinition) {
   }
 }
 
+TEST(EdgeBoxes, VisitsPairsThatMeetByDefinition) {
+  std::mt19937_64 random(1);
+  using Pair = std::pair<std::uint32_t, std::uint32_t>;
+  // Of few boxes near each other all pairs may meet, of many far apart hardly any does.
+  for (const std::int32_t apart : {0, 1, 4})
+    for (const std::uint32_t edges : {1U, 8U, 9U, 64U, 65U, 130U, 513U}) {
+      EdgeBoxes boxes(edges, std::pmr::get_default_resource());
+      std::vector<GridBox> set(edges);
+      for (std::uint32_t e = 0; e < edges; ++e) {
+        set[e] = random_box(random);
+        if (std::abs(set[e].lower.x) < 1000 && std::abs(set[e].upper.x) < 1000)
+          for (std::int32_t* x : {&set[e].lower.x, &set[e].upper.x})
+            *x += apart * static_cast<std::int32_t>(e);
+        boxes.set(e, set[e]);
+      }
+      std::vector<Pair> visited, meeting;
+      boxes.visit_meeting_pairs(
+          edges, [&](std::uint32_t e, std::uint32_t f) { visited.emplace_back(e, f); });
+      for (std::uint32_t e = 0; e < edges; ++e)
+        for (std::uint32_t f = 0; f < e; ++f)
+          if (set[e].meets(set[f])) meeting.emplace_back(e, f);
+      std::sort(visited.begin(), visited.end());
+      EXPECT_EQ(visited, meeting) << edges << " edges, " << apart << " apart";
+    }
+}
+
+TEST(EdgeBoxes, FindsAPairOfTwoSetsByDefinition) {
+  std::mt19937_64 random(1);
+  int found = 0, missed = 0;
+  for (int round = 0; round < 300; ++round) {
+    const auto make = [&](std::vector<GridBox>& set, std::int32_t beside) {
+      std::uniform_int_distribution<std::uint32_t> sizes(1, round % 3 == 0 ? 300 : 70);
+      std::uniform_int_distribution<std::int32_t> place(0, 2000), size(0, 20);
+      set.resize(sizes(random));
+      EdgeBoxes boxes(static_cast<std::uint32_t>(set.size()), std::pmr::get_default_resource());
+      for (std::uint32_t e = 0; e < set.size(); ++e) {
+        const GridPoint p{place(random) + beside, place(random)};
+        set[e] = {p, {p.x + size(random), p.y + size(random)}};
+        boxes.set(e, set[e]);
+      }
+      return boxes;
+    };
+    std::vector<GridBox> ones, others;
+    const EdgeBoxes one = make(ones, 0), other = make(others, round % 2 == 0 ? 1900 : 0);
+    std::size_t meeting = 0, asked = 0;
+    for (const GridBox& a : ones)
+      for (const GridBox& b : others) meeting += a.meets(b) ? 1U : 0U;
+    // Whatever is asked about is a pair that meets, and all are asked about if none will do.
+    EXPECT_FALSE(one.any_meeting_pair(other, [&](std::uint32_t e, std::uint32_t f) {
+      EXPECT_TRUE(ones[e].meets(others[f]));
+      ++asked;
+      return false;
+    }));
+    EXPECT_EQ(asked, meeting);
+    const auto first = [](std::uint32_t, std::uint32_t) { return true; };
+    EXPECT_EQ(one.any_meeting_pair(other, first), meeting > 0);
+    ++(meeting > 0 ? found : missed);
+  }
+  EXPECT_GT(found, 50);
+  EXPECT_GT(missed, 50);
+}
+
 TEST(EdgeBoxes, MeetsNothingBeforeItIsSet) {
   EdgeBoxes boxes(100, std::pmr::get_default_resource());
   const GridBox all{{-kMaxUnits, -kMaxUnits}, {kMaxUnits, kMaxUnits}};
   boxes.visit_meeting(all, 100, [](std::uint32_t e) { ADD_FAILURE() << e; });
+  boxes.visit_meeting_pairs(100, [](std::uint32_t e, std::uint32_t) { ADD_FAILURE() << e; });
 }
 
 struct Piece {

@@ -17,6 +17,9 @@
 
 namespace routebench::overlay {
 
+/// So many edges are found sooner by their boxes than by cells, however they lie.
+inline constexpr std::uint32_t kFewEdges = 1024;
+
 /// Boxes by the number of their edge. Of few edges, those that come near one are found sooner by a
 /// look at all than by any order among them. Of more, the boxes around every eight edges are looked
 /// at first, as edges that follow each other lie together.
@@ -31,7 +34,7 @@ class EdgeBoxes {
   void resize(std::uint32_t edges) {
     const std::size_t ungrouped = groups_.empty() ? 8 * eights_.size() : 0;
     eights_.resize((edges + 7) / 8);
-    if (edges <= kFewEdges) return;
+    if (edges <= kUngrouped) return;
     groups_.resize((eights_.size() + 7) / 8);
     for (std::uint32_t edge = 0; edge < ungrouped; ++edge) widen_group(edge);
   }
@@ -69,9 +72,6 @@ class EdgeBoxes {
         visit_meeting((*this)[edge], edge, [&](std::uint32_t other) { visit(edge, other); });
       return;
     }
-    const auto box_of_eight = [&](std::uint32_t eight) {
-      return groups_[eight / 8].box(eight % 8);
-    };
     // Only edges that meet the box around eight others look at those.
     const auto look_at = [&](std::uint32_t eight, std::uint32_t other) {
       visit_bits(eights_[eight].meeting(box_of_eight(other)), 8 * eight, edges,
@@ -88,8 +88,30 @@ class EdgeBoxes {
     }
   }
 
+  /// Whether is_it(edge, other) holds for any two whose boxes meet, of these and of others.
+  template <typename IsIt>
+  [[nodiscard]] bool any_meeting_pair(const EdgeBoxes& others, IsIt&& is_it) const {
+    bool found = false;
+    const auto look_at = [&](std::uint32_t eight, std::uint32_t other) {
+      visit_eight(eights_[eight].meeting(others.box_of_eight(other)), eight, [&](std::uint32_t e) {
+        visit_eight(others.eights_[other].meeting((*this)[e]), other,
+                    [&](std::uint32_t f) { found = found || is_it(e, f); });
+      });
+    };
+    for (std::uint32_t eight = 0; eight < eights_.size() && !found; ++eight) {
+      const GridBox box = box_of_eight(eight);
+      const auto look = [&](std::uint32_t other) { look_at(eight, other); };
+      if (others.groups_.empty())
+        for (std::uint32_t other = 0; other < others.eights_.size(); ++other) look(other);
+      else
+        for (std::uint32_t group = 0; group < others.groups_.size(); ++group)
+          visit_eight(others.groups_[group].meeting(box), group, look);
+    }
+    return found;
+  }
+
  private:
-  static constexpr std::uint32_t kFewEdges = 64;
+  static constexpr std::uint32_t kUngrouped = 64;  // edges
 
   using Coordinates = std::array<std::int32_t, 8>;
 
@@ -105,12 +127,25 @@ class EdgeBoxes {
     for (; bits != 0; bits &= bits - 1)
       visit(begin + static_cast<std::uint32_t>(std::countr_zero(bits)));
   }
+  template <typename Visit>
+  static void visit_eight(std::uint32_t bits, std::uint32_t eight, Visit&& visit) {
+    visit_bits(bits, 8 * eight, 8 * eight + 8, visit);
+  }
 
   struct alignas(16) Eight {
     Coordinates left = all(kMaxUnits + 1), low = left, right = all(-kMaxUnits - 1), high = right;
 
     [[nodiscard]] GridBox box(std::size_t k) const {
       return {{left[k], low[k]}, {right[k], high[k]}};
+    }
+    /// Around all eight.
+    [[nodiscard]] GridBox box() const {
+      GridBox around = box(0);
+      for (std::size_t k = 1; k < 8; ++k) {
+        around.lower = {std::min(around.lower.x, left[k]), std::min(around.lower.y, low[k])};
+        around.upper = {std::max(around.upper.x, right[k]), std::max(around.upper.y, high[k])};
+      }
+      return around;
     }
     void set(std::size_t k, const GridBox& box) {
       left[k] = box.lower.x;
@@ -148,6 +183,10 @@ class EdgeBoxes {
 #endif
     }
   };
+
+  [[nodiscard]] GridBox box_of_eight(std::uint32_t eight) const {
+    return groups_.empty() ? eights_[eight].box() : groups_[eight / 8].box(eight % 8);
+  }
 
   void widen_group(std::uint32_t edge) {
     groups_[edge / 64].widen(edge / 8 % 8, eights_[edge / 8].box(edge % 8));

@@ -17,6 +17,12 @@ struct Edge {
   GridPoint to;
 };
 
+[[nodiscard]] inline GridBox box_of(const Edge& edge) {
+  const auto [x0, x1] = std::minmax(edge.from.x, edge.to.x);
+  const auto [y0, y1] = std::minmax(edge.from.y, edge.to.y);
+  return {{x0, y0}, {x1, y1}};
+}
+
 /// Lists of the edges that run through each cell. A few cells an edge.
 /// Cost   to add an edge: linear in the cells that it runs through and in the edges there.
 class EdgeCells {

@@ -10,9 +10,7 @@ namespace {
 
 constexpr int kMaxRounds = 20;
 
-/// So many are found sooner by their boxes than by cells.
-constexpr std::uint32_t kFewEdges = 1024;
-constexpr std::uint32_t kFewPieces = 16 * kFewEdges;  // which are shorter
+constexpr std::uint32_t kFewPieces = 16 * kFewEdges;  // which are shorter than edges
 
 constexpr std::size_t kFewCuts = 16;  // most rings have fewer
 
@@ -98,11 +96,7 @@ void PlanarEdges::link() {
   }
 }
 
-void PlanarEdges::set_box(std::uint32_t i) {
-  const auto [a, b] = edge(i);
-  boxes_.set(i,
-             {{std::min(a.x, b.x), std::min(a.y, b.y)}, {std::max(a.x, b.x), std::max(a.y, b.y)}});
-}
+void PlanarEdges::set_box(std::uint32_t i) { boxes_.set(i, box_of(edge(i))); }
 
 void PlanarEdges::cut_until_planar() {
   for (int round = 0; round < kMaxRounds && !cuts_.empty(); ++round) {

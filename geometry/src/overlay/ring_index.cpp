@@ -30,32 +30,45 @@ std::pmr::vector<std::uint32_t> next_points(const GridRings& rings) {
 }  // namespace
 
 RingIndex::RingIndex(GridRings rings)
-    : rings_(std::move(rings)),
-      next_(next_points(rings_)),
-      cells_(
-          rings_.size(), [this](std::uint32_t e) { return edge(e); }, rings_.memory()) {
-  for (std::uint32_t e = 0; e < rings_.size(); ++e) cells_.add(e, edge(e), [](std::uint32_t) {});
+    : rings_(std::move(rings)), next_(next_points(rings_)), boxes_(rings_.size(), rings_.memory()) {
+  for (std::uint32_t e = 0; e < rings_.size(); ++e) boxes_.set(e, box_of(edge(e)));
+  if (rings_.size() <= kFewEdges) return;
+  cells_.emplace(
+      rings_.size(), [this](std::uint32_t e) { return edge(e); }, rings_.memory());
+  for (std::uint32_t e = 0; e < rings_.size(); ++e) cells_->add(e, edge(e), [](std::uint32_t) {});
 }
 
 bool RingIndex::holds(GridPoint p) const {
-  if (!cells_.cover(p)) return false;
+  if (cells_ && !cells_->cover(p)) return false;
   LeftRay ray(
       p, [this](std::uint32_t e) { return edge(e); }, [](std::uint32_t) { return true; });
-  cells_.trace(ray);
+  if (cells_)
+    cells_->trace(ray);
+  else
+    boxes_.visit_meeting({{-kMaxUnits, p.y}, p}, rings_.size(),
+                         [&](std::uint32_t e) { ray.look(e); });
   const std::uint32_t hit = ray.first();
   if (hit == kNone) return false;
   // The inside lies to the left of every edge.
   return edge(hit).to.y < edge(hit).from.y;
 }
 
-bool RingIndex::meets(const Edge& other) const {
-  if (!cells_.cover(other.from) || !cells_.cover(other.to)) return true;
-  return cells_.any_near(other, [&](std::uint32_t e) { return segments_meet(edge(e), other); });
+bool RingIndex::meets_any_of(const RingIndex& other) const {
+  if (!cells_)
+    return other.boxes_.any_meeting_pair(boxes_, [&](std::uint32_t e, std::uint32_t own) {
+      return segments_meet(other.edge(e), edge(own));
+    });
+  for (std::uint32_t e = 0; e < other.rings_.size(); ++e) {
+    const Edge it = other.edge(e);
+    if (!cells_->cover(it.from) || !cells_->cover(it.to)) return true;
+    if (cells_->any_near(it, [&](std::uint32_t own) { return segments_meet(it, edge(own)); }))
+      return true;
+  }
+  return false;
 }
 
 bool RingIndex::holds_all_of(const RingIndex& other) const {
-  for (std::uint32_t i = 0; i < other.rings_.size(); ++i)
-    if (meets(other.edge(i))) return false;
+  if (meets_any_of(other)) return false;
   // Nothing crosses: every ring lies on one side of all others.
   for (std::uint32_t ring = 0; ring < other.rings_.rings(); ++ring)
     if (!holds(other.rings_.ring(ring).front())) return false;

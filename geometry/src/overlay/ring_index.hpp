@@ -1,12 +1,16 @@
 #pragma once
 /// Rings that can be asked what they hold.
 
+#include <optional>
+
+#include "overlay/edge_boxes.hpp"
 #include "overlay/edge_cells.hpp"
 #include "overlay/grid_rings.hpp"
 
 namespace routebench::overlay {
 
-/// Rings of polygons, which share nothing but points, with cells over their edges.
+/// Rings of polygons, which share nothing but points, with boxes around their edges and, over many,
+/// cells.
 class RingIndex {
  public:
   /// Takes at least one ring.
@@ -17,9 +21,6 @@ class RingIndex {
   /// Whether a point lies inside; on the boundary it may be either.
   [[nodiscard]] bool holds(GridPoint p) const;
 
-  /// Whether an edge meets the boundary, or leaves the box around it.
-  [[nodiscard]] bool meets(const Edge& edge) const;
-
   /// Whether other rings lie inside, clear of the boundary and of all holes.
   /// Cost  linear in the other's edges and in the number of own rings, where edges are spread
   ///       evenly.
@@ -29,10 +30,13 @@ class RingIndex {
   [[nodiscard]] Edge edge(std::uint32_t i) const {
     return {rings_.points()[i], rings_.points()[next_[i]]};
   }
+  /// Whether edges of others meet the boundary; of many, also whether they leave the box around it.
+  [[nodiscard]] bool meets_any_of(const RingIndex& other) const;
 
   GridRings rings_;
   std::pmr::vector<std::uint32_t> next_;
-  EdgeCells cells_;
+  EdgeBoxes boxes_;
+  std::optional<EdgeCells> cells_;  // of many edges
 };
 
 }  // namespace routebench::overlay

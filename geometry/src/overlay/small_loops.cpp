@@ -30,12 +30,6 @@ void begin_after_longest_edge(std::pmr::vector<DrawnPoint>& curve) {
   std::rotate(curve.begin(), curve.begin() + static_cast<std::ptrdiff_t>(begin), curve.end());
 }
 
-GridBox box_of(const Edge& edge) {
-  const auto [x0, x1] = std::minmax(edge.from.x, edge.to.x);
-  const auto [y0, y1] = std::minmax(edge.from.y, edge.to.y);
-  return {{x0, y0}, {x1, y1}};
-}
-
 /// Whether one edge passes from side to side of the other's line.
 bool passes(const Edge& edge, const Edge& line) {
   const std::int64_t from = turn(line.from, line.to, edge.from);
