@@ -153,16 +153,10 @@ void PlanarEdges::cut_all_at_cuts() {
 
 std::pmr::vector<std::uint32_t> PlanarEdges::apply_cuts() {
   any_meets_ = true;
-  const auto along = [&](const Cut& cut) {
-    const GridPoint from = points_[cut.edge];
-    const std::int64_t x = cut.at.x - from.x, y = cut.at.y - from.y;
-    return x * x + y * y;
-  };
   std::pmr::vector<Cut> cuts(memory());
   cuts.swap(cuts_);
   std::sort(cuts.begin(), cuts.end(), [&](const Cut& a, const Cut& b) {
-    if (a.edge != b.edge) return a.edge < b.edge;
-    return std::tuple(along(a), a.at) < std::tuple(along(b), b.at);
+    return std::tuple(a.edge, a.squared_way, a.at) < std::tuple(b.edge, b.squared_way, b.at);
   });
   const std::size_t most = size() + cuts.size();
   points_.reserve(most);
@@ -242,12 +236,14 @@ void PlanarEdges::touch_by(std::uint32_t edge, std::uint32_t point) {
 }
 
 void PlanarEdges::touch(std::uint32_t edge, GridPoint p) {
+  const std::int64_t x = p.x - points_[edge].x, y = p.y - points_[edge].y;
+  const std::int64_t squared_way = x * x + y * y;
   if (p == points_[edge])
     meet(edge);
   else if (p == points_[next_[edge]])
     meet(next_[edge]);
   else
-    cuts_.push_back({edge, p});
+    cuts_.push_back({edge, p, squared_way});
 }
 
 void PlanarEdges::meet(std::uint32_t point) {

@@ -65,6 +65,7 @@ class PlanarEdges {
   struct Cut {
     std::uint32_t edge;
     GridPoint at;
+    std::int64_t squared_way;  ///< from the edge's first point
   };
 
   void link();
