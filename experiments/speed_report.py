@@ -159,12 +159,15 @@ def execute(command: list[str], model: Path, cores: int, scratch: Path) -> Run |
     out.unlink(missing_ok=True)
     fill = {"MODEL": str(model), "OUT": str(out), "CORES": str(cores)}
     words = [fill.get(word, word.replace("-mCORES", f"-m{cores}")) for word in command]
-    allowed = sorted(os.sched_getaffinity(0))[:cores]
+    # The program inherits our cores: a function to run before it would have all of this process
+    # copied first, for longer than the smallest jobs can spare.
+    usable = os.sched_getaffinity(0)
+    os.sched_setaffinity(0, sorted(usable)[:cores])
     begin = time.monotonic()
-    process = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-                               preexec_fn=lambda: os.sched_setaffinity(0, allowed))
+    process = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     _, status, usage = os.wait4(process.pid, 0)
     wall_s = time.monotonic() - begin
+    os.sched_setaffinity(0, usable)
     process.returncode = os.waitstatus_to_exitcode(status)
     if process.returncode != 0 or not out.exists():
         return None
