@@ -30,6 +30,8 @@ _LABEL_WIDTH = 1.9
 _PANEL_WIDTHS = (1.6, 3.2)
 _MOST_COLUMNS = 3
 _LEAST_PITCH = 0.19
+_LEAST_BARS = 0.45
+"""Height of a panel's bars, however few there are."""
 _BAR = 0.7
 """Thickness of a bar, in pitches."""
 _AXIS_HEIGHT = 0.5
@@ -80,7 +82,7 @@ def layout_for(results: Results) -> Layout:
         len(wrap(model.label, panel_width, TEXT_SIZE))
         for model in results.models
     )
-    height = pitch * len(results.contenders) + (
+    height = max(_LEAST_BARS, pitch * len(results.contenders)) + (
         text_height(titles, TEXT_SIZE) + _AXIS_HEIGHT
     )
     return Layout(

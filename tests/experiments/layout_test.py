@@ -52,6 +52,10 @@ class LayoutTest(PlotTestCase):
     def test_long_setting(self) -> None:
         self.check(["m"], ["c"], ["density=0.2, retract_over_mm=1.5, " * 5])
 
+    def test_one_contender_on_models_with_long_names(self) -> None:
+        spec = "shape:grate?holes={}&pitch=2.5&diameter=2&z=0.2&triangles=64000"
+        self.check([spec.format(n) for n in range(10, 16)], ["walls and gaps"])
+
     def test_one_contender_with_a_long_name(self) -> None:
         self.check(["m", "n", LONG_MODEL, "o"], [LONG_NAME])
 
