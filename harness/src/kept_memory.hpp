@@ -11,6 +11,10 @@ namespace routebench {
 /// them; so it is asked for large pages too. Not where memory is measured or shared with children.
 void keep_freed_memory() noexcept;
 
+/// For a thread that begins: asks for large pages for its memory too, if the process keeps what is
+/// freed.
+void keep_freed_memory_of_thread() noexcept;
+
 /// Takes what has done its work and holds it until the process ends, when the system has all memory
 /// back at once: to give it back piece by piece takes longer.
 template <typename T>
