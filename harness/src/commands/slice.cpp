@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "arguments.hpp"
@@ -102,7 +103,7 @@ void slice(const SliceArguments& arguments) {
   if (arguments.cell_mm && !(*arguments.cell_mm > 0 && std::isfinite(*arguments.cell_mm)))
     throw Error(ErrorKind::kBadUsage, "--cell " + readable(*arguments.cell_mm) +
                                           ": must be a number of millimetres above 0");
-  const SlicedModel model = slice_model(
+  SlicedModel model = slice_model(
       arguments.model, task,
       {.method = method,
        .repair = arguments.repair,
@@ -129,6 +130,7 @@ void slice(const SliceArguments& arguments) {
   } else {
     print_summary(std::cout, model);
   }
+  keep_until_exit(std::move(model));
 }
 
 }  // namespace
