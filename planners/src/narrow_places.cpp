@@ -111,7 +111,7 @@ class Follower {
     return squared_distance(p, nearest_on_segment(p, (*ring_)[edge], (*ring_)[after(edge, 1)]));
   }
 
-  /// The same without a division.
+  /// Whether that is no more than `within_squared`, which takes no division to tell.
   [[nodiscard]] bool is_within(Point2 p, std::size_t edge, double within_squared) const {
     const Point2 from = (*ring_)[edge], to = (*ring_)[after(edge, 1)];
     const Point2 way = to - from, at = p - from;

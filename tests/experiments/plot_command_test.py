@@ -87,8 +87,8 @@ class PlotCommandTest(unittest.TestCase):
         (self.folder / "bin").mkdir()
         program = self.folder / "bin" / "routebench"
         shutil.copy(self.program, program)
-        libraries = Path(self.program).resolve().parents[1] / "lib"
-        (self.folder / "lib").symlink_to(libraries)
+        for libraries in self.program.resolve().parents[1].glob("lib*"):
+            (self.folder / libraries.name).symlink_to(libraries)
         package = self.folder / "share" / "routebench" / "routebench_plots"
         package.mkdir(parents=True)
         (package / "__main__.py").write_text(

@@ -1,6 +1,7 @@
 #include "routebench/harness/parallel.hpp"
 
 #include <gtest/gtest.h>
+#include <sched.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -89,6 +90,27 @@ TEST(ParallelLoop, TakesSeveralThreads) {
     for (int seen = begun; seen < 2; seen = begun) begun.wait(seen);
   });
   EXPECT_EQ(begun, 2);
+}
+
+TEST(ParallelLoop, LetsThreadsAndWhatTheyStartRunAnywhere) {
+  const auto processors = [] {
+    cpu_set_t set;
+    CPU_ZERO(&set);
+    EXPECT_EQ(::sched_getaffinity(0, sizeof set, &set), 0);
+    return set;
+  };
+  const cpu_set_t all = processors();
+  const ParallelFor parallel_for = parallel_loop(3);
+  for (int round = 0; round < 20; ++round) {
+    std::atomic<int> begun{0};
+    parallel_for(3, [&](std::size_t) {  // all threads take part
+      const cpu_set_t here = processors();
+      EXPECT_TRUE(CPU_EQUAL(&here, &all));
+      ++begun;
+      begun.notify_all();
+      for (int seen = begun; seen < 3; seen = begun) begun.wait(seen);
+    });
+  }
 }
 
 }  // namespace

@@ -131,6 +131,8 @@ TEST(PlanLayers, WhatIsTakenOverIsWhatWouldBePlanned) {
       for (std::size_t i = 0; i < planned.size(); ++i) {
         EXPECT_EQ(taken[i].route, planned[i].route) << name << ", place " << i;
         EXPECT_EQ(taken[i].kinds, planned[i].kinds) << name << ", place " << i;
+        EXPECT_GT(planned[i].plan_cpu_ns, 0) << name << ", place " << i;
+        EXPECT_EQ(taken[i].plan_cpu_ns, 0) << name << ", place " << i;
       }
       const std::vector<std::size_t> original = first_of_equal_routes(contender, model, chosen);
       std::size_t different = 0;

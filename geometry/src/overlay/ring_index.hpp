@@ -23,7 +23,7 @@ class RingIndex {
 
   /// Whether other rings lie inside, clear of the boundary and of all holes.
   /// Cost  linear in the other's edges and in the number of own rings, where edges are spread
-  ///       evenly.
+  ///       evenly; up to kFewEdges own edges at most their product, eight at a time.
   [[nodiscard]] bool holds_all_of(const RingIndex& other) const;
 
  private:

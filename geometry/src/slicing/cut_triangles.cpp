@@ -78,7 +78,8 @@ class Blocks {
  public:
   Blocks(std::size_t triangles, std::size_t planes) : triangles_(triangles) {
     const std::size_t affordable = std::max<std::size_t>(1, kMaxBlockCursors / (planes + 1));
-    count_ = std::clamp<std::size_t>((triangles + kTrianglesPerBlock - 1) / kTrianglesPerBlock, 1, affordable);
+    count_ = std::clamp<std::size_t>((triangles + kTrianglesPerBlock - 1) / kTrianglesPerBlock, 1,
+                                     affordable);
   }
   [[nodiscard]] std::size_t count() const { return count_; }
   [[nodiscard]] std::size_t begin(std::size_t block) const { return triangles_ * block / count_; }
