@@ -92,25 +92,28 @@ void append(std::vector<T> more, std::vector<T>& to) {
   std::move(more.begin(), more.end(), std::back_inserter(to));
 }
 
-/// Adds the sides of what lies between a wall's centre line and what comes before it.
-void append_band(const Polygons& before, double before_mm, const Polygons& region, double wall_mm,
-                 TakenSides& sides) {
-  append(rings_of(before), sides.rings);
+/// The sides of what lies between a wall's centre line and what comes before it.
+TakenSides sides_between(const Polygons& before, double before_mm, const Polygons& region,
+                         double wall_mm) {
+  TakenSides sides;
+  sides.rings = rings_of(before);
   sides.taken_mm.resize(sides.rings.size(), before_mm);
   for (Ring& ring : rings_of(region)) {
     std::reverse(ring.begin(), ring.end());
     sides.rings.push_back(std::move(ring));
   }
   sides.taken_mm.resize(sides.rings.size(), wall_mm);
+  return sides;
 }
 
 }  // namespace
 
-std::vector<TakenSides> wall_gaps(const Polygons& polygons, const std::vector<Polygons>& regions,
-                                  int count, const PlanContext& context) {
+std::vector<std::vector<TakenSides>> wall_gaps(const Polygons& polygons,
+                                               const std::vector<Polygons>& regions, int count,
+                                               const PlanContext& context) {
   const double margin_mm = kMarginSpacings * context.spacing_mm, half_mm = context.spacing_mm / 2;
   const Polygons none;
-  std::vector<TakenSides> gaps;
+  std::vector<std::vector<TakenSides>> gaps;
   for (std::size_t wall = 0; wall <= regions.size() && std::cmp_less(wall, count); ++wall) {
     stop_if_asked(context);
     const bool is_first = wall == 0;
@@ -118,13 +121,13 @@ std::vector<TakenSides> wall_gaps(const Polygons& polygons, const std::vector<Po
     const Polygons& region = wall < regions.size() ? regions[wall] : none;
     const double before_mm = is_first ? 0 : half_mm;
     const double wall_mm = is_first ? context.line_width_mm / 2 : half_mm;
-    TakenSides& sides = gaps.emplace_back();
+    gaps.emplace_back();
     // Where nothing is narrow, the wall's place grows back to where it came from.
     for (const Box2& box :
          doubtful_places(region, before, before_mm + wall_mm, kStubMm, margin_mm)) {
       // All that reaches into it: between walls nothing is open between the one before and the box.
       const Polygons laid = clipped(region, is_first ? grown(box, margin_mm) : box);
-      append_band(clipped(before, box), before_mm, laid, wall_mm, sides);
+      gaps.back().push_back(sides_between(clipped(before, box), before_mm, laid, wall_mm));
     }
   }
   return gaps;
@@ -141,15 +144,15 @@ std::vector<Stroke> gap_lines(const Polygons& polygons, const std::vector<Polygo
   CentreLineRule between = outside;
   between.min_width_mm = std::max(outside.min_width_mm - overlap_mm, outside.min_width_mm / 4);
   between.max_width_mm -= overlap_mm;
-  std::vector<TakenSides> gaps = wall_gaps(polygons, regions, count, context);
+  std::vector<std::vector<TakenSides>> gaps = wall_gaps(polygons, regions, count, context);
   std::vector<Stroke> strokes;
   for (std::size_t wall = 0; wall < gaps.size(); ++wall) {
     const bool is_first = wall == 0;
-    for (Stroke& stroke :
-         centre_lines(std::move(gaps[wall]), is_first ? outside : between, context)) {
-      if (!is_first) stroke.width_mm += overlap_mm;
-      strokes.push_back(std::move(stroke));
-    }
+    for (TakenSides& sides : gaps[wall])
+      for (Stroke& stroke : centre_lines(std::move(sides), is_first ? outside : between, context)) {
+        if (!is_first) stroke.width_mm += overlap_mm;
+        strokes.push_back(std::move(stroke));
+      }
   }
   return strokes;
 }

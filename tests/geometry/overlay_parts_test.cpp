@@ -1,17 +1,25 @@
-/// Laws of what overlays are made of: boxes of edges, and memory for a while.
+/// Laws of what overlays are made of: boxes of edges, rings that cross, and memory for a while.
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <cstring>
 #include <memory_resource>
+#include <optional>
 #include <random>
+#include <span>
 #include <utility>
 #include <vector>
 
+#include "overlay/crossed_rings.hpp"
 #include "overlay/edge_boxes.hpp"
+#include "overlay/overlay.hpp"
+#include "overlay/planar_edges.hpp"
+#include "overlay/ring_index.hpp"
 #include "overlay/scratch.hpp"
 
 namespace routebench::overlay {
@@ -137,6 +145,152 @@ TEST(EdgeBoxes, MeetsNothingBeforeItIsSet) {
   const GridBox all{{-kMaxUnits, -kMaxUnits}, {kMaxUnits, kMaxUnits}};
   boxes.visit_meeting(all, 100, [](std::uint32_t e) { ADD_FAILURE() << e; });
   boxes.visit_meeting_pairs(100, [](std::uint32_t e, std::uint32_t) { ADD_FAILURE() << e; });
+}
+
+constexpr std::array kInsides{Inside::kFirstPositive, Inside::kFirstNonZero, Inside::kFirstOdd,
+                              Inside::kEither,        Inside::kBoth,         Inside::kFirstOnly};
+
+/// Rings of either set that run about at will.
+GridRings random_rings(std::mt19937_64& random, std::int32_t extent) {
+  std::uniform_int_distribution<std::int32_t> place(-extent, extent);
+  std::uniform_int_distribution<int> count(1, 5), corners(3, 12), kind(0, 2);
+  GridRings rings;
+  for (int n = count(random); n > 0; --n) {
+    constexpr std::array<Winding, 3> windings{{{1, 0}, {0, 1}, {-1, 0}}};
+    rings.begin_ring(windings[static_cast<std::size_t>(kind(random))]);
+    for (int k = corners(random); k > 0; --k) rings.add({place(random), place(random)});
+    rings.end_ring();
+  }
+  return rings;
+}
+
+/// By the definition. Takes a place on none of the rings.
+Winding winding_at(const GridRings& rings, GridPoint p) {
+  Winding sum;
+  for (std::uint32_t ring = 0; ring < rings.rings(); ++ring) {
+    GridPoint a = rings.ring(ring).back();
+    for (const GridPoint b : rings.ring(ring)) {
+      if (a.y <= p.y && b.y > p.y && turn(a, b, p) > 0) sum = sum + rings.winding(ring);
+      if (b.y <= p.y && a.y > p.y && turn(a, b, p) < 0) sum = sum - rings.winding(ring);
+      a = b;
+    }
+  }
+  return sum;
+}
+
+/// Whether a place is so near to an edge that rounding may move one over the other.
+bool is_near_an_edge(const GridRings& rings, GridPoint p) {
+  constexpr std::int32_t kMoved = 2;
+  for (std::uint32_t ring = 0; ring < rings.rings(); ++ring) {
+    GridPoint a = rings.ring(ring).back();
+    for (const GridPoint b : rings.ring(ring)) {
+      const GridBox box = box_of(std::array{a, b});
+      const std::int64_t x = b.x - a.x, y = b.y - a.y;
+      if (box.lower.x - kMoved <= p.x && p.x <= box.upper.x + kMoved &&
+          box.lower.y - kMoved <= p.y && p.y <= box.upper.y + kMoved &&
+          std::abs(turn(a, b, p)) <= kMoved * (std::abs(x) + std::abs(y)))
+        return true;
+      a = b;
+    }
+  }
+  return false;
+}
+
+TEST(CrossedRings, BoundWhatIsInsideByDefinition) {
+  std::mt19937_64 random(1);
+  // Rings on a coarse grid touch, cross at nearly one place and leave slivers.
+  for (const std::int32_t extent : {20, 100, 1000, 1000000, kMaxUnits / 2}) {
+    int bounded = 0, asked = 0;
+    for (int round = 0; round < 300; ++round) {
+      const GridRings rings = random_rings(random, extent);
+      if (rings.rings() == 0) continue;
+      const PlanarEdges edges(rings);
+      const CrossedRings crossed(edges);
+      for (const Inside inside : kInsides) {
+        const std::optional<GridRings> boundary = crossed.boundary(inside);
+        ++asked;
+        if (!boundary) continue;
+        ++bounded;
+        if (boundary->rings() > 0) {
+          EXPECT_FALSE(PlanarEdges(*boundary).any_meets());
+        }
+        std::uniform_int_distribution<std::int32_t> place(-extent, extent);
+        for (int i = 0; i < 40; ++i) {
+          const GridPoint p{place(random), place(random)};
+          if (is_near_an_edge(rings, p)) continue;
+          EXPECT_EQ(winding_at(*boundary, p).first, is_inside(winding_at(rings, p), inside) ? 1 : 0)
+              << "round " << round << " within " << extent;
+        }
+      }
+    }
+    // Where odd windings and others meet at corners only, or edges touch, it has to be cut.
+    if (extent >= 1000000) {
+      EXPECT_GT(3 * bounded, asked);
+    }
+  }
+}
+
+TEST(CrossedRings, SayNothingOfRingsThatTouch) {
+  const auto square = [](GridRings& rings, std::int32_t from, std::int32_t to, Winding winding) {
+    rings.begin_ring(winding);
+    for (const GridPoint p : {GridPoint{from, from}, {to, from}, {to, to}, {from, to}})
+      rings.add(p);
+    rings.end_ring();
+  };
+  for (const std::int32_t from : {0, 10, 100}) {  // same side, corner on side, corner at corner
+    GridRings rings;
+    square(rings, 0, 100, {1, 0});
+    square(rings, from, from + 150, {0, 1});
+    const PlanarEdges edges(rings);
+    EXPECT_EQ(CrossedRings(edges).boundary(Inside::kEither).has_value(), from == 10);
+  }
+}
+
+TEST(Overlay, DividesByDefinition) {
+  std::mt19937_64 random(2);
+  for (const std::int32_t extent : {20, 1000, 1000000})
+    for (int round = 0; round < 200; ++round) {
+      const GridRings rings = random_rings(random, extent);
+      const std::optional<Divided> divided = divide(rings);
+      ASSERT_TRUE(divided);
+      const GridRings within = rings_of(divided->within), beyond = rings_of(divided->beyond);
+      std::uniform_int_distribution<std::int32_t> place(-extent, extent);
+      for (int i = 0; i < 100; ++i) {
+        const GridPoint p{place(random), place(random)};
+        if (is_near_an_edge(rings, p)) continue;
+        const Winding winding = winding_at(rings, p);
+        EXPECT_EQ(winding_at(within, p).first, is_inside(winding, Inside::kBoth) ? 1 : 0);
+        EXPECT_EQ(winding_at(beyond, p).first, is_inside(winding, Inside::kFirstOnly) ? 1 : 0);
+      }
+    }
+}
+
+TEST(RingIndex, TellsWhatComesNear) {
+  const auto square_at = [](GridPoint lower, std::int32_t side) {
+    GridRings rings;
+    rings.begin_ring({1, 0});
+    for (const GridPoint by : {GridPoint{0, 0}, {side, 0}, {side, side}, {0, side}})
+      rings.add({lower.x + by.x, lower.y + by.y});
+    rings.end_ring();
+    return RingIndex(std::move(rings));
+  };
+  const RingIndex square = square_at({0, 0}, 1000);
+  for (const GridPoint along : {GridPoint{1, 0}, {0, 1}, {-1, 0}, {0, -1}}) {
+    const auto beside = [&](std::int32_t gap) {
+      const std::int32_t by = along.x + along.y > 0 ? 1000 + gap : 100 + gap;
+      return square_at(
+          {400 * std::abs(along.y) + by * along.x, 400 * std::abs(along.x) + by * along.y}, 100);
+    };
+    for (const std::int32_t gap : {-50, 0, 1, 3}) {
+      EXPECT_TRUE(square.comes_near(beside(gap))) << gap;
+      EXPECT_TRUE(beside(gap).comes_near(square)) << gap;
+    }
+    for (const std::int32_t gap : {6, 100}) {
+      EXPECT_FALSE(square.comes_near(beside(gap))) << gap;
+      EXPECT_FALSE(beside(gap).comes_near(square)) << gap;
+    }
+  }
+  EXPECT_FALSE(square.comes_near(square_at({450, 450}, 100)));  // inside, clear of the boundary
 }
 
 struct Piece {

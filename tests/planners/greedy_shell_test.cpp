@@ -249,13 +249,17 @@ TEST(GreedyShell, FillingGapsLeavesTheWallsAsTheyAreAndCoversMore) {
   EXPECT_GT(filled, 5);
 }
 
-/// What is left between sides beyond what is taken.
-Polygons open_between(const TakenSides& sides) {
+/// What is left between the sides of places beyond what is taken.
+Polygons open_between(const std::vector<TakenSides>& places) {
   // Where one wall just follows the other nothing is; offsets are true to 5 um.
   constexpr double kNoiseMm = 0.01;
-  std::vector<double> distances_mm;
-  for (const double taken_mm : sides.taken_mm) distances_mm.push_back(-taken_mm - kNoiseMm);
-  return offset(offset_boundary(sides.rings, distances_mm), kNoiseMm);
+  Polygons open;
+  for (const TakenSides& sides : places) {
+    std::vector<double> distances_mm;
+    for (const double taken_mm : sides.taken_mm) distances_mm.push_back(-taken_mm - kNoiseMm);
+    open = unite(open, offset(offset_boundary(sides.rings, distances_mm), kNoiseMm));
+  }
+  return open;
 }
 
 TEST(WallGaps, AreWhatNoWallReaches) {
@@ -265,8 +269,8 @@ TEST(WallGaps, AreWhatNoWallReaches) {
       const std::vector<Polygons> regions = wall_regions(polygon, context);
       // Offsets are true to 5 um.
       Polygons all;
-      for (const TakenSides& sides : wall_gaps({polygon}, regions, 3, context))
-        all = unite(all, open_between(sides));
+      for (const std::vector<TakenSides>& places : wall_gaps({polygon}, regions, 3, context))
+        all = unite(all, open_between(places));
       const Polygons gaps = without_thin_parts(all, 0.02);
       const double slivers_mm2 = 0.001 * perimeter_mm({polygon});
       EXPECT_LE(area_mm2(subtract(gaps, {polygon})), slivers_mm2);
@@ -278,9 +282,9 @@ TEST(WallGaps, AreWhatNoWallReaches) {
       }
     }
   const Polygon square{test::rectangle(0, 0, 10, 10), {}};
-  for (const TakenSides& none :
+  for (const std::vector<TakenSides>& none :
        wall_gaps({square}, wall_regions(square, context_for(3)), 3, context_for(3)))
-    EXPECT_TRUE(none.rings.empty());
+    EXPECT_TRUE(none.empty());
 }
 
 TEST(WallGaps, LeaveNoRoomForALineBesideThem) {
@@ -290,7 +294,7 @@ TEST(WallGaps, LeaveNoRoomForALineBesideThem) {
     for (const Polygon& polygon : layer.polygons) {
       const PlanContext context = context_for(3);
       const std::vector<Polygons> regions = wall_regions(polygon, context);
-      const std::vector<TakenSides> gaps = wall_gaps({polygon}, regions, 3, context);
+      const std::vector<std::vector<TakenSides>> gaps = wall_gaps({polygon}, regions, 3, context);
       const auto missing = [&](const Polygons& open, const Polygons& laid, const Polygons& gap) {
         found += gap.empty() ? 0 : 1;
         const Polygons all = without_thin_parts(subtract(open, laid), narrowest_line_mm(context));

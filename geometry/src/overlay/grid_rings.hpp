@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <compare>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <memory_resource>
@@ -60,6 +61,14 @@ struct GridBox {
     box.upper = {std::max(box.upper.x, p.x), std::max(box.upper.y, p.y)};
   }
   return box;
+}
+
+/// Positive if the ring turns left. Takes at least one point.
+[[nodiscard]] inline double twice_area(std::span<const GridPoint> ring) {
+  double sum = 0;
+  for (std::size_t i = 1; i + 1 < ring.size(); ++i)
+    sum += static_cast<double>(turn(ring[0], ring[i], ring[i + 1]));
+  return sum;
 }
 
 /// Many rings in one array.

@@ -1,15 +1,16 @@
 #include "overlay/overlay.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <tuple>
 #include <utility>
 
 #include "overlay/chains.hpp"
+#include "overlay/crossed_rings.hpp"
 #include "overlay/monotone_runs.hpp"
 
 namespace routebench::overlay {
-namespace {
 
 bool is_inside(Winding w, Inside inside) {
   switch (inside) {
@@ -28,6 +29,8 @@ bool is_inside(Winding w, Inside inside) {
   }
   return false;
 }
+
+namespace {
 
 /// Takes points away that lie on the line between their neighbours.
 void drop_straight_points(GridRing& ring) {
@@ -53,13 +56,6 @@ void drop_straight_points(GridRing& ring) {
   if (kept - first < 3) kept = first;
   ring.erase(ring.begin() + static_cast<std::ptrdiff_t>(kept), ring.end());
   ring.erase(ring.begin(), ring.begin() + static_cast<std::ptrdiff_t>(first));
-}
-
-double twice_area(const GridRing& ring) {
-  double sum = 0;
-  for (std::size_t i = 1; i + 1 < ring.size(); ++i)
-    sum += static_cast<double>(turn(ring[0], ring[i], ring[i + 1]));
-  return sum;
 }
 
 /// Collects the boundaries of what is inside, face by face.
@@ -335,22 +331,86 @@ class ApartRings {
   std::size_t steps_ = 0;
 };
 
+/// What rings that meet nowhere and have the inside to their left bound; nothing if that takes too
+/// long.
+std::optional<std::vector<GridPolygon>> faces_within(const GridRings& rings) {
+  std::uint32_t outer = kNone;
+  for (std::uint32_t i = 0; i < rings.rings(); ++i) {
+    if (twice_area(rings.ring(i)) < 0) continue;
+    if (outer != kNone)
+      return rings.rings() <= ApartRings::kMostRings
+                 ? ApartRings(rings).faces(Inside::kFirstPositive)
+                 : std::nullopt;
+    outer = i;
+  }
+  std::vector<GridPolygon> polygons;
+  if (outer == kNone) return polygons;
+  const auto straight = [&](std::uint32_t i) {
+    GridRing ring(rings.ring(i).begin(), rings.ring(i).end(), rings.memory());
+    drop_straight_points(ring);
+    return ring;
+  };
+  GridPolygon& polygon = polygons.emplace_back(straight(outer), std::vector<GridRing>{});
+  for (std::uint32_t i = 0; i < rings.rings(); ++i)
+    if (i != outer) polygon.holes.push_back(straight(i));
+  return polygons;
+}
+
+template <std::size_t N>
+using Faces = std::array<std::vector<GridPolygon>, N>;
+
+/// What all of `faces(inside)` find, if they do.
+template <std::size_t N, typename Find>
+std::optional<Faces<N>> found_for_all(const std::array<Inside, N>& insides, Find&& faces) {
+  Faces<N> all;
+  for (std::size_t i = 0; i < N; ++i) {
+    auto found = faces(insides[i]);
+    if (!found) return std::nullopt;
+    all[i] = *std::move(found);
+  }
+  return all;
+}
+
+/// The faces for several rules, of which the second and further ones cost little.
+template <std::size_t N>
+std::optional<Faces<N>> overlays(const GridRings& rings, const std::array<Inside, N>& insides) {
+  if (rings.rings() == 0) return Faces<N>{};
+  // What is offset or cut from a solid seldom meets itself; of two areas the outlines mostly do.
+  const bool is_one_set = insides[0] == Inside::kFirstPositive ||
+                          insides[0] == Inside::kFirstNonZero || insides[0] == Inside::kFirstOdd;
+  const bool may_be_apart = rings.rings() <= ApartRings::kMostRings;
+  const auto apart = [&](Inside inside) { return ApartRings(rings).faces(inside); };
+  if (may_be_apart && is_one_set && meet_nowhere(rings))
+    if (auto faces = found_for_all(insides, apart)) return faces;
+  PlanarEdges planar(rings);
+  if (planar.any_meets()) {
+    const CrossedRings crossed(planar);
+    if (auto faces = found_for_all(insides, [&](Inside inside) {
+          const auto boundary = crossed.boundary(inside);
+          return boundary ? faces_within(*boundary) : std::nullopt;
+        }))
+      return faces;
+    if (!planar.cut()) return std::nullopt;
+  } else if (may_be_apart) {
+    if (auto faces = found_for_all(insides, apart)) return faces;
+  }
+  const ChainGraph graph(planar);
+  return found_for_all(insides, [&](Inside inside) {
+    return std::optional(FaceTracer(planar, graph, inside).run());
+  });
+}
+
 }  // namespace
 
 std::optional<std::vector<GridPolygon>> overlay(const GridRings& rings, Inside inside) {
-  if (rings.rings() == 0) return std::vector<GridPolygon>{};
-  // What is offset or cut from a solid seldom meets itself; of two areas the outlines mostly do.
-  const bool is_one_set = inside == Inside::kFirstPositive || inside == Inside::kFirstNonZero ||
-                          inside == Inside::kFirstOdd;
-  const bool may_be_apart = rings.rings() <= ApartRings::kMostRings;
-  if (may_be_apart && is_one_set && meet_nowhere(rings))
-    if (auto faces = ApartRings(rings).faces(inside)) return faces;
-  const PlanarEdges planar(rings);
-  if (!planar.are_planar()) return std::nullopt;
-  if (may_be_apart && !planar.any_meets())
-    if (auto faces = ApartRings(rings).faces(inside)) return faces;
-  const ChainGraph graph(planar);
-  return FaceTracer(planar, graph, inside).run();
+  auto faces = overlays(rings, std::array{inside});
+  return faces ? std::optional(std::move(faces->front())) : std::nullopt;
+}
+
+std::optional<Divided> divide(const GridRings& rings) {
+  auto faces = overlays(rings, std::array{Inside::kBoth, Inside::kFirstOnly});
+  return faces ? std::optional(Divided{std::move(faces->front()), std::move(faces->back())})
+               : std::nullopt;
 }
 
 GridRings rings_of(const std::vector<GridPolygon>& polygons, std::pmr::memory_resource* memory) {

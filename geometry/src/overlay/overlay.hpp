@@ -13,6 +13,8 @@ namespace routebench::overlay {
 /// Which places are inside, by how often the rings of the two sets run round them.
 enum class Inside { kFirstPositive, kFirstNonZero, kFirstOdd, kEither, kBoth, kFirstOnly };
 
+[[nodiscard]] bool is_inside(Winding winding, Inside inside);
+
 using GridRing = std::pmr::vector<GridPoint>;
 
 /// Outer ring counter-clockwise, holes clockwise; rings may touch in points.
@@ -28,6 +30,16 @@ struct GridPolygon {
 /// Cost    about linear where edges are spread evenly.
 [[nodiscard]] std::optional<std::vector<GridPolygon>> overlay(const GridRings& rings,
                                                               Inside inside);
+
+/// The first set's area, divided by the second's.
+struct Divided {
+  std::vector<GridPolygon> within;
+  std::vector<GridPolygon> beyond;
+};
+
+/// overlay() for both Inside::kBoth and Inside::kFirstOnly.
+/// Cost  little more than that of one of them.
+[[nodiscard]] std::optional<Divided> divide(const GridRings& rings);
 
 /// The rings of polygons, to their left the inside.
 [[nodiscard]] GridRings rings_of(

@@ -35,6 +35,7 @@ PlanarEdges::PlanarEdges(const GridRings& rings, Unmet)
       next_(rings.memory()),
       meets_(rings.memory()),
       boxes_(rings.size(), rings.memory()),
+      seen_(rings.memory()),
       cuts_(rings.memory()) {
   cuts_.reserve(kFewCuts);
   link();
@@ -50,7 +51,6 @@ PlanarEdges::PlanarEdges(const GridRings& rings) : PlanarEdges(rings, Unmet()) {
       visit_near(e, e, [&](std::uint32_t f) { look_at(e, f); });
   else
     boxes_.visit_meeting_pairs(size(), look_at);
-  cut_until_planar();
 }
 
 PlanarEdges::PlanarEdges(const GridRings& rings, std::span<const std::uint8_t> moved)
@@ -63,15 +63,18 @@ PlanarEdges::PlanarEdges(const GridRings& rings, std::span<const std::uint8_t> m
       if (counts && !are_neighbours(e, f)) look(e, f);
     });
   }
-  cut_until_planar();
 }
 
 template <typename Near>
 void PlanarEdges::visit_near(std::uint32_t e, std::uint32_t others, Near&& near) {
   const GridBox box = boxes_[e];
   if (!cells_) return boxes_.visit_meeting(box, others, near);
+  seen_.resize(size(), 0);
+  ++visits_;
   cells_->add(e, edge(e), [&](std::uint32_t f) {
-    if (boxes_[f].meets(box)) near(f);
+    if (seen_[f] == visits_ || !boxes_[f].meets(box)) return;
+    seen_[f] = visits_;
+    near(f);
   });
 }
 
@@ -98,7 +101,7 @@ void PlanarEdges::link() {
 
 void PlanarEdges::set_box(std::uint32_t i) { boxes_.set(i, box_of(edge(i))); }
 
-void PlanarEdges::cut_until_planar() {
+bool PlanarEdges::cut() {
   for (int round = 0; round < kMaxRounds && !cuts_.empty(); ++round) {
     cut_all_at_cuts();
     const std::uint32_t uncut = size();
@@ -117,7 +120,7 @@ void PlanarEdges::cut_until_planar() {
           look(e, f);
       });
   }
-  are_planar_ = cuts_.empty();
+  return cuts_.empty();
 }
 
 void PlanarEdges::make_cells() {
@@ -152,7 +155,7 @@ void PlanarEdges::cut_all_at_cuts() {
 }
 
 std::pmr::vector<std::uint32_t> PlanarEdges::apply_cuts() {
-  any_meets_ = true;
+  any_touches_ = true;
   std::pmr::vector<Cut> cuts(memory());
   cuts.swap(cuts_);
   std::sort(cuts.begin(), cuts.end(), [&](const Cut& a, const Cut& b) {
@@ -248,7 +251,7 @@ void PlanarEdges::touch(std::uint32_t edge, GridPoint p) {
 
 void PlanarEdges::meet(std::uint32_t point) {
   meets_[point] = 1;
-  any_meets_ = true;
+  any_touches_ = true;
 }
 
 }  // namespace routebench::overlay

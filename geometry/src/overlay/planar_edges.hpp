@@ -1,5 +1,5 @@
 #pragma once
-/// Rings cut where they meet, so that edges share nothing but ends.
+/// Where the edges of rings meet, and rings cut there.
 
 #include <cstdint>
 #include <optional>
@@ -12,15 +12,21 @@
 
 namespace routebench::overlay {
 
-/// The edges of rings, cut at each other. Where edges cross, both are cut at the nearest place of
-/// the grid, and with them all that pass within half a unit of it: so edges that nearly coincide
-/// become one, where they would cross each other over and over. That moves edges by less than a
-/// unit, and what they then meet is cut again. Edge i runs from point i to the next point of its
-/// ring.
+/// An edge passes through the place of the grid that is nearest to where it meets another one.
+struct Cut {
+  std::uint32_t edge;
+  GridPoint at;
+  std::int64_t squared_way;  ///< from the edge's first point
+};
+
+/// The edges of rings, and where they meet. Edge i runs from point i to the next point of its ring.
+/// Where edges cross, both can be cut at the nearest place of the grid, and with them all that pass
+/// within half a unit of it: so edges that nearly coincide become one, where they would cross each
+/// other over and over. That moves edges by less than a unit, and what they then meet is cut again.
 /// Source: J. Hobby, Practical segment intersection with finite precision output, 1999.
 class PlanarEdges {
  public:
-  /// Takes at least one ring.
+  /// Takes at least one ring. Nothing is cut yet.
   /// Cost  linear in edges and in pairs that come near each other.
   explicit PlanarEdges(const GridRings& rings);
 
@@ -28,10 +34,16 @@ class PlanarEdges {
   /// of these are looked at.
   PlanarEdges(const GridRings& rings, std::span<const std::uint8_t> moved);
 
-  /// False if cuts led to new cuts again and again, which has not been seen.
-  [[nodiscard]] bool are_planar() const { return are_planar_; }
   /// Whether any two rings, or parts of one, meet.
-  [[nodiscard]] bool any_meets() const { return any_meets_; }
+  [[nodiscard]] bool any_meets() const { return any_touches_ || !crossings().empty(); }
+  /// Whether any meet where one of them has a point.
+  [[nodiscard]] bool any_touches() const { return any_touches_; }
+  /// Before edges are cut: of each two that cross, both, one after the other.
+  [[nodiscard]] std::span<const Cut> crossings() const { return cuts_; }
+
+  /// Cuts edges where they meet, so that they share nothing but ends.
+  /// Returns false if cuts led to new cuts again and again, which has not been seen.
+  [[nodiscard]] bool cut();
 
   [[nodiscard]] std::pmr::memory_resource* memory() const { return rings_.memory(); }
   [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(points_.size()); }
@@ -43,6 +55,10 @@ class PlanarEdges {
 
   [[nodiscard]] std::uint32_t rings() const { return rings_.rings(); }
   [[nodiscard]] std::uint32_t first_point(std::uint32_t ring) const { return rings_.begin(ring); }
+  /// The points of a ring, without cuts.
+  [[nodiscard]] std::span<const GridPoint> ring(std::uint32_t ring) const {
+    return rings_.ring(ring);
+  }
   [[nodiscard]] Winding winding(std::uint32_t ring) const { return rings_.winding(ring); }
 
   /// See LeftRay.
@@ -62,21 +78,14 @@ class PlanarEdges {
   struct Unmet {};
   PlanarEdges(const GridRings& rings, Unmet unmet);
 
-  struct Cut {
-    std::uint32_t edge;
-    GridPoint at;
-    std::int64_t squared_way;  ///< from the edge's first point
-  };
-
   void link();
   void set_box(std::uint32_t edge);
-  void cut_until_planar();
   void make_cells();
   void make_cells_without(std::span<const std::uint32_t> pieces);
   /// Cuts whatever passes through the pixel of a cut there too.
   void cut_all_at_cuts();
   std::pmr::vector<std::uint32_t> apply_cuts();
-  /// Cuts two edges, not neighbours of one ring, where they meet.
+  /// Finds where two edges, not neighbours of one ring, meet.
   void look(std::uint32_t e, std::uint32_t f);
   bool share_one_end(std::uint32_t e, std::uint32_t f);
   void look_at_fold(std::uint32_t e, std::uint32_t f);
@@ -87,7 +96,7 @@ class PlanarEdges {
     return next_[e] == f || next_[f] == e;
   }
   /// Calls near(f) for edges whose box meets that of an edge: without cells for those of the first
-  /// `others`, with cells for those added before, possibly several times, and adds the edge.
+  /// `others`, with cells for those added before, and adds the edge.
   template <typename Near>
   void visit_near(std::uint32_t e, std::uint32_t others, Near&& near);
 
@@ -98,9 +107,11 @@ class PlanarEdges {
   EdgeBoxes boxes_;
   std::optional<EdgeCells> cells_;  // of many edges
   std::uint32_t cells_made_for_ = 0;
+  // Cells may hold an edge several times; with them, edges remember the last visit.
+  std::pmr::vector<std::uint32_t> seen_;
+  std::uint32_t visits_ = 0;
   std::pmr::vector<Cut> cuts_;
-  bool any_meets_ = false;
-  bool are_planar_ = true;
+  bool any_touches_ = false;
 };
 
 }  // namespace routebench::overlay

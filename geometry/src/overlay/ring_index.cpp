@@ -1,5 +1,7 @@
 #include "overlay/ring_index.hpp"
 
+#include <algorithm>
+#include <cstdlib>
 #include <utility>
 
 namespace routebench::overlay {
@@ -16,6 +18,19 @@ bool segments_meet(const Edge& a, const Edge& b) {
   };
   return !apart(turn(a.from, a.to, b.from), turn(a.from, a.to, b.to)) &&
          !apart(turn(b.from, b.to, a.from), turn(b.from, b.to, a.to));
+}
+
+/// More than two cuts can move what they cut.
+constexpr std::int32_t kNear = 4;
+
+GridBox grown(GridBox box) {
+  return {{box.lower.x - kNear, box.lower.y - kNear}, {box.upper.x + kNear, box.upper.y + kNear}};
+}
+
+bool are_near(const Edge& edge, GridPoint p) {
+  const std::int64_t x = edge.to.x - edge.from.x, y = edge.to.y - edge.from.y;
+  return grown(box_of(edge)).meets({p, p}) &&
+         std::abs(turn(edge.from, edge.to, p)) <= kNear * (std::abs(x) + std::abs(y));
 }
 
 std::pmr::vector<std::uint32_t> next_points(const GridRings& rings) {
@@ -65,6 +80,16 @@ bool RingIndex::meets_any_of(const RingIndex& other) const {
       return true;
   }
   return false;
+}
+
+bool RingIndex::comes_near(const RingIndex& other) const {
+  EdgeBoxes around(rings_.size(), rings_.memory());
+  for (std::uint32_t e = 0; e < rings_.size(); ++e) around.set(e, grown(boxes_[e]));
+  return other.boxes_.any_meeting_pair(around, [&](std::uint32_t f, std::uint32_t e) {
+    const Edge a = edge(e), b = other.edge(f);
+    return segments_meet(a, b) || are_near(a, b.from) || are_near(a, b.to) || are_near(b, a.from) ||
+           are_near(b, a.to);
+  });
 }
 
 bool RingIndex::holds_all_of(const RingIndex& other) const {

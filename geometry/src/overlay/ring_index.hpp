@@ -26,6 +26,10 @@ class RingIndex {
   ///       evenly; up to kFewEdges own edges at most their product, eight at a time.
   [[nodiscard]] bool holds_all_of(const RingIndex& other) const;
 
+  /// Whether boundaries come as near to each other as cuts move them.
+  /// Cost  as above, of few edges.
+  [[nodiscard]] bool comes_near(const RingIndex& other) const;
+
  private:
   [[nodiscard]] Edge edge(std::uint32_t i) const {
     return {rings_.points()[i], rings_.points()[next_[i]]};

@@ -98,27 +98,47 @@ struct SkinFinder::Impl {
       if (!indices[other] && !layers[other].polygons.empty()) return false;
       if (!indices[other] || !indices[other]->holds_all_of(*own)) needed.push_back(other);
     }
-    if (needed.empty()) return true;
-    if (needed.size() == 1) return add_cut(*own, indices[needed[0]], Inside::kFirstOnly, skins);
+    // Each takes a piece of what those before it leave.
+    std::vector<std::vector<overlay::GridPolygon>> pieces;
     Index common = own;
     for (const std::size_t other : needed) {
-      if (!common || (indices[other] && indices[other]->holds_all_of(*common))) continue;
-      std::vector<overlay::GridPolygon> left;
-      if (!add_cut(*common, indices[other], Inside::kBoth, left)) return false;
+      if (!common) break;
+      if (!pieces.empty() && indices[other] && indices[other]->holds_all_of(*common)) continue;
+      auto parts = divided(*common, indices[other]);
+      if (!parts) return false;
+      if (parts->beyond.empty()) continue;
+      pieces.push_back(std::move(parts->beyond));
       common.reset();
-      if (!left.empty()) common.emplace(overlay::rings_of(left));
+      if (!parts->within.empty()) common.emplace(overlay::rings_of(parts->within));
     }
-    return add_cut(*own, common, Inside::kFirstOnly, skins);
+    if (!are_apart(pieces)) {
+      auto parts = divided(*own, common);
+      if (!parts) return false;
+      pieces = {std::move(parts->beyond)};
+    }
+    for (const auto& piece : pieces) skins.insert(skins.end(), piece.begin(), piece.end());
+    return true;
   }
 
-  /// Adds what two areas make; false if they cannot be cut.
-  [[nodiscard]] static bool add_cut(const overlay::RingIndex& area, const Index& other,
-                                    Inside inside, std::vector<overlay::GridPolygon>& made) {
+  /// What of an area lies in another one and what does not; nothing if they cannot be cut.
+  [[nodiscard]] static std::optional<overlay::Divided> divided(const overlay::RingIndex& area,
+                                                               const Index& other) {
     overlay::GridRings rings = area.rings();
     if (other) rings.add_near(other->rings(), area.rings(), {0, 1});
-    const auto faces = overlay::overlay(rings, inside);
-    if (faces) made.insert(made.end(), faces->begin(), faces->end());
-    return faces.has_value();
+    return overlay::divide(rings);
+  }
+
+  /// Whether no two pieces share a side, so that they need not be joined. Cuts are moved by less
+  /// than a unit each.
+  [[nodiscard]] static bool are_apart(
+      const std::vector<std::vector<overlay::GridPolygon>>& pieces) {
+    if (pieces.size() < 2) return true;
+    std::vector<overlay::RingIndex> indices;
+    for (const auto& piece : pieces) indices.emplace_back(overlay::rings_of(piece));
+    for (std::size_t i = 0; i < indices.size(); ++i)
+      for (std::size_t k = 0; k < i; ++k)
+        if (indices[i].comes_near(indices[k])) return false;
+    return true;
   }
 
   [[nodiscard]] Polygons skins_off_the_grid(const Polygons& region,

@@ -24,12 +24,13 @@ namespace routebench {
 /// the last wall is none of it, and nothing is open where a wall just follows what comes before.
 ///
 /// Takes   polygons and their wall_regions, fewer than `count` if no more fit.
-/// Returns sides near places where a wall does not follow, cut off along boxes farther away. A
-///         wall's place is half a spacing wide, but towards the outline all that its bead reaches.
+/// Returns of each wall the sides near each place where it does not follow, cut off along a box
+///         farther away. A wall's place is half a spacing wide, but towards the outline all that
+///         its bead reaches.
 /// Cost    linear.
-[[nodiscard]] std::vector<TakenSides> wall_gaps(const Polygons& polygons,
-                                                const std::vector<Polygons>& regions, int count,
-                                                const PlanContext& context);
+[[nodiscard]] std::vector<std::vector<TakenSides>> wall_gaps(const Polygons& polygons,
+                                                             const std::vector<Polygons>& regions,
+                                                             int count, const PlanContext& context);
 
 /// Lines along the middle of wall_gaps, each as wide as its gap, from narrowest_line_mm to
 /// widest_mm. Those between walls overlap with them as much as walls do with each other.
