@@ -207,6 +207,9 @@ std::optional<double> EdgeGrid::distance_to_edge_mm(Point2 p, double limit_mm) c
   if (edges_.empty()) return std::nullopt;
   Point2 foot;
   double nearest_squared = std::numeric_limits<double>::infinity();
+  // No line that is farther away than an edge or the limit is looked at; that takes no division.
+  constexpr double kRounding = 1 + 1e-9;
+  double farthest_squared = kRounding * limit_mm * limit_mm;
   // Widening boxes around p: most questions end in the first.
   for (double reach = std::min(limit_mm, cell_mm_);; reach = std::min(limit_mm, 2 * reach)) {
     // An edge in several cells is looked at more than once, which costs less than to sort them.
@@ -214,10 +217,14 @@ std::optional<double> EdgeGrid::distance_to_edge_mm(Point2 p, double limit_mm) c
       const auto c = static_cast<std::size_t>(cell);
       for (std::uint32_t i = cells_.begin[c]; i < cells_.begin[c + 1]; ++i) {
         const Edge& edge = edges_[cells_.items[i]];
+        const Point2 way = edge.b - edge.a;
+        const double across = cross(way, p - edge.a);
+        if (across * across > farthest_squared * dot(way, way)) continue;
         const Point2 candidate = nearest_on_segment(p, edge.a, edge.b);
         const double squared = squared_distance(p, candidate);
         if (squared >= nearest_squared) continue;
         nearest_squared = squared;
+        farthest_squared = std::min(farthest_squared, kRounding * squared);
         foot = candidate;
       }
     });

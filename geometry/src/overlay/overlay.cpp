@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <limits>
+#include <span>
 #include <tuple>
 #include <utility>
 
@@ -227,6 +229,17 @@ class FaceTracer {
   std::pmr::vector<std::uint32_t> place_{memory_};  // nodes: where the path leaves them
 };
 
+/// By a ray to the left, infinitesimally above the point, which lies on no edge of the ring.
+bool lies_in(GridPoint p, std::span<const GridPoint> ring) {
+  bool is_in = false;
+  GridPoint a = ring.back();
+  for (const GridPoint b : ring) {
+    if ((a.y <= p.y) != (b.y <= p.y)) is_in ^= a.y < b.y ? turn(a, b, p) < 0 : turn(b, a, p) < 0;
+    a = b;
+  }
+  return is_in;
+}
+
 /// The faces of rings that do not meet: every ring is on one side of all others, so one point of it
 /// tells how often they run round it.
 class ApartRings {
@@ -301,20 +314,10 @@ class ApartRings {
     return place;
   }
 
-  /// By a ray to the left, infinitesimally above the point.
   bool lies_in(GridPoint p, std::uint32_t ring) {
-    const GridBox& box = places_[ring].box;
-    if (p.x < box.lower.x || p.x > box.upper.x || p.y < box.lower.y || p.y > box.upper.y)
-      return false;
-    const std::span<const GridPoint> points = rings_.ring(ring);
-    steps_ += points.size();
-    bool is_in = false;
-    GridPoint a = points.back();
-    for (const GridPoint b : points) {
-      if ((a.y <= p.y) != (b.y <= p.y)) is_in ^= a.y < b.y ? turn(a, b, p) < 0 : turn(b, a, p) < 0;
-      a = b;
-    }
-    return is_in;
+    if (!places_[ring].box.meets({p, p})) return false;
+    steps_ += rings_.ring(ring).size();
+    return overlay::lies_in(p, rings_.ring(ring));
   }
 
   /// What is inside lies to the left of the ring then.
@@ -331,28 +334,49 @@ class ApartRings {
   std::size_t steps_ = 0;
 };
 
-/// What rings that meet nowhere and have the inside to their left bound; nothing if that takes too
-/// long.
+/// What rings that meet nowhere bound, the inside to their left; nothing if that takes too long.
 std::optional<std::vector<GridPolygon>> faces_within(const GridRings& rings) {
-  std::uint32_t outer = kNone;
-  for (std::uint32_t i = 0; i < rings.rings(); ++i) {
-    if (twice_area(rings.ring(i)) < 0) continue;
-    if (outer != kNone)
-      return rings.rings() <= ApartRings::kMostRings
-                 ? ApartRings(rings).faces(Inside::kFirstPositive)
-                 : std::nullopt;
-    outer = i;
-  }
-  std::vector<GridPolygon> polygons;
-  if (outer == kNone) return polygons;
+  constexpr std::size_t kStepsPerPoint = 32;
+  struct Outer {
+    std::uint32_t ring;
+    double area;
+    GridBox box;
+  };
+  std::pmr::vector<Outer> outers(rings.memory());
+  std::pmr::vector<std::uint32_t> holes(rings.memory());
+  for (std::uint32_t i = 0; i < rings.rings(); ++i)
+    if (const double area = twice_area(rings.ring(i)); area > 0)
+      outers.push_back({i, area, box_of(rings.ring(i))});
+    else
+      holes.push_back(i);
+  if (outers.size() * holes.size() > kStepsPerPoint * rings.size()) return std::nullopt;
   const auto straight = [&](std::uint32_t i) {
     GridRing ring(rings.ring(i).begin(), rings.ring(i).end(), rings.memory());
     drop_straight_points(ring);
     return ring;
   };
-  GridPolygon& polygon = polygons.emplace_back(straight(outer), std::vector<GridRing>{});
-  for (std::uint32_t i = 0; i < rings.rings(); ++i)
-    if (i != outer) polygon.holes.push_back(straight(i));
+  std::vector<GridPolygon> polygons;
+  polygons.reserve(outers.size());
+  for (const Outer& outer : outers) polygons.push_back({straight(outer.ring), {}});
+  std::size_t steps = 0;
+  for (const std::uint32_t hole : holes) {
+    const GridPoint p = rings.ring(hole).front();
+    // The smallest of all round it.
+    std::size_t best = 0;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < outers.size(); ++k) {
+      const Outer& outer = outers[k];
+      if (outer.area >= least || !outer.box.meets({p, p})) continue;
+      if (outers.size() > 1) {
+        steps += rings.ring(outer.ring).size();
+        if (!lies_in(p, rings.ring(outer.ring))) continue;
+      }
+      best = k;
+      least = outer.area;
+    }
+    if (steps > kStepsPerPoint * rings.size()) return std::nullopt;
+    if (!outers.empty()) polygons[best].holes.push_back(straight(hole));
+  }
   return polygons;
 }
 
