@@ -14,8 +14,6 @@
 #include <thread>
 #include <vector>
 
-#include "kept_memory.hpp"
-
 namespace routebench {
 namespace {
 
@@ -58,7 +56,6 @@ class Workers {
 
  private:
   void wait_for_work() {
-    keep_freed_memory_of_thread();
     std::unique_lock lock(mutex_);
     while (true) {
       wake_.wait(lock, [this] { return is_over_ || places_ > 0; });
