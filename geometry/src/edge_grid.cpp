@@ -213,9 +213,13 @@ std::optional<double> EdgeGrid::distance_to_edge_mm(Point2 p, double limit_mm) c
   // Widening boxes around p: most questions end in the first.
   for (double reach = std::min(limit_mm, cell_mm_);; reach = std::min(limit_mm, 2 * reach)) {
     // An edge in several cells is looked at more than once, which costs less than to sort them.
-    visit_cells(p, p, reach, [&](std::int64_t cell) {
-      const auto c = static_cast<std::size_t>(cell);
-      for (std::uint32_t i = cells_.begin[c]; i < cells_.begin[c + 1]; ++i) {
+    const std::int64_t first_column = column(p.x - reach), last_column = column(p.x + reach);
+    const std::int64_t last_row = row(p.y + reach);
+    for (std::int64_t r = row(p.y - reach); r <= last_row; ++r) {
+      // The cells of a row follow each other.
+      const auto first = static_cast<std::size_t>(r * column_count_ + first_column);
+      const auto end = static_cast<std::size_t>(r * column_count_ + last_column + 1);
+      for (std::uint32_t i = cells_.begin[first]; i < cells_.begin[end]; ++i) {
         const Edge& edge = edges_[cells_.items[i]];
         const Point2 way = edge.b - edge.a;
         const double across = cross(way, p - edge.a);
@@ -227,7 +231,7 @@ std::optional<double> EdgeGrid::distance_to_edge_mm(Point2 p, double limit_mm) c
         farthest_squared = std::min(farthest_squared, kRounding * squared);
         foot = candidate;
       }
-    });
+    }
     if (nearest_squared <= reach * reach || reach >= limit_mm) break;
   }
   if (!(nearest_squared < std::numeric_limits<double>::infinity())) return std::nullopt;
