@@ -156,8 +156,10 @@ class MovedBoundary {
       // The moved edges cross. Where neither is used up by that, only their crossing matters.
       if (1 + cosine >= kShortestMitre && edges_[before].left >= 0 && edges_[after].left >= 0)
         return go_to(tip);
+      // By way of the corner, or of a place behind it: nothing is inside that near to it, and the
+      // ways from square corners would run along the sides of others.
       go_to(u);
-      draw({moved(p, {}), false});
+      go_to({-kBehind * (u.x + v.x), -kBehind * (u.y + v.y)}, false);
       go_to(v, false);
     } else if (1 + cosine >= kShortestMitre) {
       go_to(tip, true, std::abs(distance_) * (std::sqrt(2 * mitre) - 1) > clean_);
@@ -173,6 +175,7 @@ class MovedBoundary {
     if (drawn_.empty() || drawn_.back().at != p.at) drawn_.push_back(p);
   }
 
+  static constexpr double kBehind = 1.0 / 16;
   static constexpr double kShortestMitre = 0.5;  // 1 + cosine of the turn: a mitre of twice
 
   double distance_ = 0;  // of the ring
