@@ -24,6 +24,7 @@ enum class Thin { kFill, kDrop };
 enum class Published { kNone, kDeKeyser, kSimpleSlicer };
 
 constexpr double kLeastStripMm2 = 0.05;  // less is noise of offsets
+constexpr double kSideMm = 0.015;        // more than offsets are cleaned of
 // Nearer to a line than this share of the spacing the boundary counts as laid: half the spacing is
 // how far a line has to reach anyway.
 constexpr double kReach = 0.6;
@@ -169,7 +170,8 @@ class Rectilinear final : public Planner {
     const double half_mm = context.spacing_mm / 2;
     const Polygons cores = offset(regions, -half_mm);
     if (area_mm2(regions) - grown_area_mm2(cores, half_mm) < kLeastStripMm2) return regions;
-    return intersect(offset(cores, half_mm), regions);
+    // Grown a little farther, for sides that coincide would cross at every corner.
+    return intersect(offset(cores, half_mm + kSideMm), regions);
   }
 
   static std::vector<std::vector<Point2>> traces(const Hatch& hatch,

@@ -234,7 +234,7 @@ Polygons without_strips(Polygons region, double reach_mm, double near_mm,
   }
   if (strips.empty()) return region;
   region.erase(first_narrow, region.end());
-  append(subtract(narrow, strips), region);
+  append(subtract(narrow, offset(strips, kSideMm)), region);
   return region;
 }
 
