@@ -83,18 +83,21 @@ void PlanarEdges::link() {
   meets_.assign(points_.size(), 0);
   for (std::uint32_t ring = 0; ring < rings(); ++ring) {
     const std::uint32_t begin = rings_.begin(ring), end = rings_.end(ring);
-    // A ring turns back only where its direction does.
     std::uint32_t before = end - 1;
     next_[before] = begin;
-    std::int64_t x = points_[begin].x - points_[before].x, y = points_[begin].y - points_[before].y;
+    GridPoint from = points_[begin];
+    std::int64_t x = from.x - points_[before].x, y = from.y - points_[before].y;
     for (std::uint32_t i = begin; i < end; before = i++) {
-      if (i + 1 < end) next_[i] = i + 1;
-      set_box(i);
-      const std::int64_t dx = points_[next_[i]].x - points_[i].x;
-      const std::int64_t dy = points_[next_[i]].y - points_[i].y;
+      const std::uint32_t next = i + 1 < end ? i + 1 : begin;
+      const GridPoint to = points_[next];
+      next_[i] = next;
+      boxes_.set(i, box_of(Edge{from, to}));
+      // A ring turns back only where its direction does.
+      const std::int64_t dx = to.x - from.x, dy = to.y - from.y;
       if (x * dx + y * dy < 0) look_at_fold(before, i);
       x = dx;
       y = dy;
+      from = to;
     }
   }
 }
