@@ -196,11 +196,22 @@ class RingProof {
       first = before(first);
     for (std::size_t k = 0; k < ring_.size() && distance(ring_[after(last)], p) < near_mm; ++k)
       last = after(last);
+    const double wide = reach_between(first, last, 0);
+    return p == ring_[i] ? std::max(wide, reach_between(before(i), i, distance_mm_)) : wide;
+  }
+
+  /// The same at a corner between two edges; 1 if they are shorter than its inset takes of them
+  /// where it is `full_mm` away.
+  [[nodiscard]] double reach_between(std::size_t first, std::size_t last, double full_mm) const {
     const Point2 in = ring_[after(first)] - ring_[first], out = ring_[after(last)] - ring_[last];
-    if (cross(in, out) <= 0) return 1;  // towards the inside, or straight
+    const double sine = cross(in, out), cosine = dot(in, out);
+    if (sine <= 0) return 1;  // towards the inside, or straight
+    const double in2 = dot(in, in), out2 = dot(out, out), scale = std::sqrt(in2 * out2);
     // 1 / cos(t / 2) of the turn t, as cos(t) = 2 cos(t / 2)^2 - 1
-    const double share = 1 + dot(in, out) / std::sqrt(dot(in, in) * dot(out, out));
-    return share > kSharpest ? std::sqrt(2 / share) : 1;
+    const double share = 1 + cosine / scale;
+    if (share <= kSharpest) return 1;
+    const double used_mm = full_mm * sine / (scale + cosine);  // tan(t / 2)
+    return std::min(in2, out2) >= used_mm * used_mm ? std::sqrt(2 / share) : 1;
   }
 
   const Ring& ring_;
