@@ -8,7 +8,7 @@ packages=(
   # build
   cmake g++ make ninja-build pkg-config git
   # geometry and planners
-  libboost-dev libcgal-dev libeigen3-dev liblemon-dev libpolyclipping-dev libpugixml-dev libssl-dev libzip-dev
+  libboost-dev libcgal-dev libeigen3-dev liblemon-dev libmd-dev libpolyclipping-dev libpugixml-dev libzip-dev
   zlib1g-dev
   # harness
   libcli11-dev libsqlite3-dev libtomlplusplus-dev nlohmann-json3-dev

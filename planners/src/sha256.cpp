@@ -1,46 +1,32 @@
 #include "routebench/planning/sha256.hpp"
 
-#include <openssl/evp.h>
+#include <sha2.h>
+#include <sys/types.h>
 
 #include <array>
+#include <cstdint>
 #include <fstream>
-#include <memory>
-
-#include "routebench/geometry/error.hpp"
 
 namespace routebench {
 namespace {
 
-/// A running digest of libcrypto.
 class Digest {
  public:
-  Digest() : context_(EVP_MD_CTX_new(), &EVP_MD_CTX_free) {
-    check(context_ != nullptr && EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr) == 1);
-  }
+  Digest() { SHA256Init(&context_); }
 
   void add(std::string_view bytes) {
-    check(EVP_DigestUpdate(context_.get(), bytes.data(), bytes.size()) == 1);
+    SHA256Update(&context_, reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
   }
 
   std::string finish() {
-    std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
-    unsigned int size = 0;
-    check(EVP_DigestFinal_ex(context_.get(), digest.data(), &size) == 1);
-    constexpr std::string_view kDigits = "0123456789abcdef";
-    std::string text;
-    for (unsigned int i = 0; i < size; ++i) {
-      text += kDigits[digest[i] >> 4U];
-      text += kDigits[digest[i] & 15U];
-    }
+    std::string text(SHA256_DIGEST_STRING_LENGTH, '\0');
+    SHA256End(&context_, text.data());
+    text.pop_back();  // the zero at its end
     return text;
   }
 
  private:
-  static void check(bool ok) {
-    if (!ok) throw Error(ErrorKind::kInternal, "libcrypto offers no SHA-256");
-  }
-
-  std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context_;
+  SHA2_CTX context_{};
 };
 
 }  // namespace

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "model/face_sink.hpp"
-#include "model/formats.hpp"
+#include "model/threemf.hpp"
 #include "model/zip_archive.hpp"
 
 namespace routebench::models {
@@ -292,9 +292,11 @@ class ThreeMf {
 };
 
 }  // namespace
-
-RawMesh read_3mf(std::span<const char> bytes, const ReadContext& context) {
-  return ThreeMf(bytes, context).read();
-}
-
 }  // namespace routebench::models
+
+// See threemf.hpp.
+void routebench_read_3mf(std::span<const char> bytes,
+                         const routebench::models::ReadContext& context,
+                         routebench::models::RawMesh& mesh) {
+  mesh = routebench::models::ThreeMf(bytes, context).read();
+}
