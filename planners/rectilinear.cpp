@@ -178,7 +178,7 @@ class Rectilinear final : public Planner {
                                                  const std::vector<Joint>& joints,
                                                  const Polygon& region,
                                                  const PlanContext& context) {
-    const double mean_width_mm = 2 * area_mm2(region) / perimeter_mm(Polygons{region});
+    const double mean_width_mm = 2 * area_mm2(region) / perimeter_mm(region);
     const bool is_narrow = mean_width_mm < kNarrowLines * context.line_width_mm;
     return bare_boundary(hatch, joints, (is_narrow ? kReachInNarrow : kReach) * context.spacing_mm,
                          (is_narrow ? 0.5 : 1) * context.line_width_mm, context);

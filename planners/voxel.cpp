@@ -109,7 +109,7 @@ class Voxel final : public Planner {
                                 : RowEnds::kBoundary;
     rule.rim_distance_mm = context.spacing_mm;
 
-    const Box2 box = bounding_box({region});
+    const Box2 box = bounding_box(region);
     const CellMap map =
         map_cells(dense && moves_inside() && params_.fit
                       ? fitted_cells(box, context)

@@ -97,12 +97,6 @@ Polygons clip(cl::ClipType operation, const Polygons& a, const Polygons& b) {
   return from_clipper(tree);
 }
 
-double perimeter_of(const Polygon& polygon) {
-  double sum = perimeter_mm(polygon.outer);
-  for (const Ring& hole : polygon.holes) sum += perimeter_mm(hole);
-  return sum;
-}
-
 }  // namespace
 
 namespace overlay {
@@ -186,9 +180,15 @@ double perimeter_mm(const Ring& ring) {
   return sum + distance(ring.back(), ring.front());
 }
 
+double perimeter_mm(const Polygon& polygon) {
+  double sum = perimeter_mm(polygon.outer);
+  for (const Ring& hole : polygon.holes) sum += perimeter_mm(hole);
+  return sum;
+}
+
 double perimeter_mm(const Polygons& polygons) {
   double sum = 0;
-  for (const Polygon& polygon : polygons) sum += perimeter_of(polygon);
+  for (const Polygon& polygon : polygons) sum += perimeter_mm(polygon);
   return sum;
 }
 
@@ -197,11 +197,24 @@ Box2 around(const Box2& a, const Box2& b) {
           {std::max(a.upper.x, b.upper.x), std::max(a.upper.y, b.upper.y)}};
 }
 
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr Box2 kNowhere{{kInfinity, kInfinity}, {-kInfinity, -kInfinity}};
+
+}  // namespace
+
+Box2 bounding_box(const Ring& ring) {
+  Box2 box = kNowhere;
+  for (const Point2 p : ring) box = around(box, {p, p});
+  return box;
+}
+
+Box2 bounding_box(const Polygon& polygon) { return bounding_box(polygon.outer); }
+
 Box2 bounding_box(const Polygons& polygons) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  Box2 box{{kInfinity, kInfinity}, {-kInfinity, -kInfinity}};
-  for (const Polygon& polygon : polygons)
-    for (const Point2 p : polygon.outer) box = around(box, {p, p});
+  Box2 box = kNowhere;
+  for (const Polygon& polygon : polygons) box = around(box, bounding_box(polygon));
   return box;
 }
 

@@ -19,10 +19,10 @@ bool meet(const Box2& a, const Box2& b) {
 Polygons rest_of(const Polygons& inside, const Polygons& dense) {
   if (dense.empty()) return inside;
   std::vector<Box2> boxes;
-  for (const Polygon& skin : dense) boxes.push_back(bounding_box({skin}));
+  for (const Polygon& skin : dense) boxes.push_back(bounding_box(skin));
   Polygons rest;
   for (const Polygon& polygon : inside) {
-    const Box2 box = bounding_box({polygon});
+    const Box2 box = bounding_box(polygon);
     Polygons near;
     for (std::size_t i = 0; i < dense.size(); ++i)
       if (meet(box, boxes[i])) near.push_back(dense[i]);

@@ -10,8 +10,6 @@
 namespace routebench::concentric {
 namespace {
 
-Box2 box_of(const Ring& ring) { return bounding_box({{ring, {}}}); }
-
 bool overlap(const Box2& a, const Box2& b, double margin_mm) {
   return a.lower.x <= b.upper.x + margin_mm && b.lower.x <= a.upper.x + margin_mm &&
          a.lower.y <= b.upper.y + margin_mm && b.lower.y <= a.upper.y + margin_mm;
@@ -54,13 +52,13 @@ LoopForest loop_forest(const std::vector<Polygons>& insets, double step_mm,
     std::vector<Region> here;
     for (const Polygon& polygon : inset) {
       stop_if_asked(context);
-      Region region{&polygon, bounding_box({polygon}),
+      Region region{&polygon, bounding_box(polygon),
                     static_cast<std::uint32_t>(forest.loops.size()),
                     static_cast<std::uint32_t>(1 + polygon.holes.size())};
       const Region* around = region_around(region, outside);
       for (std::uint32_t i = 0; i < region.loops; ++i) {
         Loop loop{i == 0 ? polygon.outer : polygon.holes[i - 1], kNoLoop, {}, regions};
-        boxes.push_back(i == 0 ? region.box : box_of(loop.ring));
+        boxes.push_back(i == 0 ? region.box : bounding_box(loop.ring));
         const auto own = static_cast<std::uint32_t>(forest.loops.size());
         double least = std::numeric_limits<double>::infinity();
         std::vector<std::uint32_t> near;

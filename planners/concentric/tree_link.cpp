@@ -57,7 +57,7 @@ TreeLinker::TreeLinker(const LoopForest& forest, const EdgeGrid& area, double st
 void TreeLinker::bridge_trees() {
   const std::vector<Loop>& loops = forest_.loops;
   std::vector<Box2> boxes;
-  for (const Loop& loop : loops) boxes.push_back(bounding_box({{loop.ring, {}}}));
+  for (const Loop& loop : loops) boxes.push_back(bounding_box(loop.ring));
   const double limit_mm = kFarthestSteps * step_mm_;
   std::vector<Pair> pairs;
   const auto consider = [&](std::uint32_t a, std::uint32_t b) {

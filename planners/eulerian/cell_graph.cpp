@@ -22,7 +22,7 @@ class SquareGraph {
  public:
   SquareGraph(const Polygon& region, double pitch_mm, double least_mm)
       : rings_(rings_of({region})), least_mm_(least_mm) {
-    const Box2 box = bounding_box({region});
+    const Box2 box = bounding_box(region);
     const Pitch pitch{pitch_mm, pitch_mm, 0, false};
     x_ = axis_over(box.lower.x, box.upper.x, pitch);
     y_ = axis_over(box.lower.y, box.upper.y, pitch);

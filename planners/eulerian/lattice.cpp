@@ -63,7 +63,7 @@ std::uint32_t framed_places(const Axis& x, const Axis& y) {
 }
 
 Lattice::Lattice(const Polygon& region, const Pitch& pitch) : pitch_(pitch), edges_({region}) {
-  const Box2 box = bounding_box({region});
+  const Box2 box = bounding_box(region);
   x_ = axis_over(box.lower.x, box.upper.x, pitch);
   y_ = axis_over(box.lower.y, box.upper.y, pitch);
   const std::uint32_t size = framed_places(x_, y_);

@@ -81,7 +81,7 @@ class StrokeCutter {
   /// Lays the largest bead on the long axis of a compact part; false if it is none.
   bool cut_compact(const Polygon& core, double inwards_mm) {
     if (rule_.width != CentreLineWidth::kInscribed || !core.holes.empty()) return false;
-    const Box2 box = bounding_box({core});
+    const Box2 box = bounding_box(core);
     const double extent_mm = distance(box.lower, box.upper) + 2 * inwards_mm;
     if (extent_mm > kCompact * rule_.max_width_mm) return false;
     Point2 centre, along;
@@ -111,7 +111,7 @@ class StrokeCutter {
 
   /// Lays a dot at the place that is farthest from the boundary, if that is wide enough.
   void dot(const Polygon& core, double inwards_mm) {
-    const Box2 box = bounding_box({core});
+    const Box2 box = bounding_box(core);
     const double extent_mm = distance(box.lower, box.upper) + 2 * inwards_mm;
     if (extent_mm < rule_.min_dot_mm) return;
     Point2 deepest = core.outer.front();
@@ -301,7 +301,7 @@ std::vector<Stroke> centre_lines(TakenSides sides, const CentreLineRule& rule,
   Rooms rooms(sides, cores.size());
   for (const Polygon& core : cores) {
     stop_if_asked(context);
-    const Box2 box = bounding_box({core});
+    const Box2 box = bounding_box(core);
     const double extent_mm = distance(box.lower, box.upper) + 2 * inwards_mm;
     if (extent_mm < std::min(rule.min_length_mm, rule.min_dot_mm)) continue;
     // Beads are as wide as the sides let them be, not those of the core, and may reach beyond it.

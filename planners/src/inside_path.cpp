@@ -24,7 +24,7 @@ bool holds(const Box2& box, Point2 p) {
 
 InsidePaths::InsidePaths(const Polygons& polygons) {
   for (const Polygon& polygon : polygons) {
-    Room room{EdgeGrid({polygon}), bounding_box({polygon}), {}};
+    Room room{EdgeGrid({polygon}), bounding_box(polygon), {}};
     const auto add_corners = [&](const Ring& ring) {
       for (std::size_t i = 0; i < ring.size(); ++i) {
         const Corner corner{ring[(i + ring.size() - 1) % ring.size()], ring[i],

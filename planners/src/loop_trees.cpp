@@ -22,7 +22,7 @@ class LoopTrees {
   explicit LoopTrees(const std::vector<Polygons>& insets) {
     for (const Polygons& inset : insets) {
       for (Ring& ring : rings_of(inset)) {
-        boxes_.push_back(bounding_box({{ring, {}}}));
+        boxes_.push_back(bounding_box(ring));
         tree_.push_back(static_cast<std::uint32_t>(loops_.size()));
         loops_.push_back({std::move(ring)});
       }

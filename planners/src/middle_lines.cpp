@@ -288,7 +288,7 @@ std::optional<double> Room::radius_mm(Point2 p, double limit_mm) const {
 
 std::vector<MiddleLine> middle_lines(const Polygon& core, double inwards_mm, const Room& room,
                                      double widest_mm) {
-  const double mean_width_mm = 2 * (area_mm2(core) / perimeter_mm(Polygons{core}) + inwards_mm);
+  const double mean_width_mm = 2 * (area_mm2(core) / perimeter_mm(core) + inwards_mm);
   const double step_mm =
       std::clamp(mean_width_mm, kLeastStepMm, std::max(kLeastStepMm, widest_mm / 2 - inwards_mm));
   std::vector<MiddleLine> lines = PrunedAxis(chordal_axis(core, step_mm), room, widest_mm).lines();

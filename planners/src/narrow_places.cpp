@@ -30,9 +30,7 @@ class Follower {
   explicit Follower(const Polygons& polygons) {
     const auto add = [this](const Ring& ring) {
       rings_.push_back(&ring);
-      Box2 box{ring.front(), ring.front()};
-      for (const Point2 p : ring) box = around(box, {p, p});
-      boxes_.push_back(box);
+      boxes_.push_back(bounding_box(ring));
     };
     for (const Polygon& polygon : polygons) {
       add(polygon.outer);
@@ -307,7 +305,7 @@ std::vector<Box2> doubtful_places(const Polygons& inset, const Polygons& area, d
 Polygons clipped(const Polygons& polygons, const Box2& box) {
   Polygons kept;
   for (const Polygon& polygon : polygons) {
-    const Box2 bounds = bounding_box({polygon});
+    const Box2 bounds = bounding_box(polygon);
     if (!meet(box, bounds)) continue;
     if (holds(box, bounds)) {
       kept.push_back(polygon);

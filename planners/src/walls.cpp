@@ -76,7 +76,7 @@ double least_stroke_mm2(const PlanContext& context) {
 
 /// Mean width of a polygon that is a strip: of its sides' length, its ends are none.
 double strip_width_mm(const Polygon& strip) {
-  const double area = area_mm2(strip), half_mm = perimeter_mm(Polygons{strip}) / 2;
+  const double area = area_mm2(strip), half_mm = perimeter_mm(strip) / 2;
   if (!strip.holes.empty()) return area / half_mm;
   // length x width = area, length + width = half the perimeter
   return 2 * area / (half_mm + std::sqrt(std::max(half_mm * half_mm - 4 * area, 0.0)));
@@ -171,7 +171,7 @@ bool is_strip(const Polygon& part, double reach_mm, const PlanContext& context) 
   const bool has_ends = part.holes.empty();
   const double needed =
       area + 2 * length_mm * reach_mm + (has_ends ? std::numbers::pi * reach_mm * reach_mm : 0);
-  const double twice = perimeter_mm(Polygons{part}) * context.spacing_mm;
+  const double twice = perimeter_mm(part) * context.spacing_mm;
   const double once =
       (width_mm + context.spacing_mm) * std::max(length_mm - (has_ends ? width_mm : 0), 0.0);
   return once >= kEnough * needed && std::abs(once - needed) < std::abs(twice - needed);

@@ -234,8 +234,7 @@ TEST(Overlay, SidesThatNearlyCoincideAreCutNoOftenerThanTheyCross) {
           EXPECT_LE(corners.size(), static_cast<std::size_t>(sides * copies) + crossings(rings));
           expect_edges_meet_in_points_only(polygons);
           const bool is_filled = rule == FillRule::kNonZero || copies % 2 != 0;
-          const double moved_mm2 =
-              perimeter_mm({{rings[0], {}}}) * 4 * (units + 1) / kGridUnitsPerMm;
+          const double moved_mm2 = perimeter_mm(rings[0]) * 4 * (units + 1) / kGridUnitsPerMm;
           EXPECT_NEAR(area_mm2(polygons), is_filled ? signed_area_mm2(rings[0]) : 0, moved_mm2);
         }
       }

@@ -113,7 +113,7 @@ TEST(Region, NothingIsNeutral) {
   EXPECT_TRUE(subtract({}, a).empty());
   EXPECT_NEAR(area_mm2(unite(a, {})), area_mm2(a), kAreaTolerance);
   EXPECT_TRUE(offset({}, 1).empty());
-  EXPECT_LT(bounding_box({}).upper.x, bounding_box({}).lower.x);
+  EXPECT_LT(bounding_box(Polygons{}).upper.x, bounding_box(Polygons{}).lower.x);
 }
 
 TEST(Region, OffsetOfASquareIsASquare) {

@@ -77,7 +77,7 @@ TEST(IslandTree, PutsEveryRegionOnTheIslandItIsPartOf) {
     for (std::size_t i = 0; i < islands.size(); ++i) {
       EXPECT_EQ(tree.island_of(islands[i]), i) << "an island is part of itself, seed " << seed;
       for (const Polygon& part : offset({islands[i]}, -0.04)) EXPECT_EQ(tree.island_of(part), i);
-      const Box2 box = bounding_box({islands[i]});
+      const Box2 box = bounding_box(islands[i]);
       const double middle = (box.lower.x + box.upper.x) / 2;
       const Polygons left =
           intersect({islands[i]}, {{test::rectangle(-100, -100, middle, 200), {}}});

@@ -26,7 +26,7 @@ std::vector<Polygon> regions() {
   return all;
 }
 
-CellGrid grid_over(const Polygon& region) { return anchored_cells(bounding_box({region}), kPitch); }
+CellGrid grid_over(const Polygon& region) { return anchored_cells(bounding_box(region), kPitch); }
 
 std::int64_t steps_between(const CellGrid& grid, std::uint32_t a, std::uint32_t b) {
   const auto apart = [](std::uint32_t i, std::uint32_t k) {

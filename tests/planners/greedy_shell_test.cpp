@@ -272,7 +272,7 @@ TEST(WallGaps, AreWhatNoWallReaches) {
       for (const std::vector<TakenSides>& places : wall_gaps({polygon}, regions, 3, context))
         all = unite(all, open_between(places));
       const Polygons gaps = without_thin_parts(all, 0.02);
-      const double slivers_mm2 = 0.001 * perimeter_mm({polygon});
+      const double slivers_mm2 = 0.001 * perimeter_mm(polygon);
       EXPECT_LE(area_mm2(subtract(gaps, {polygon})), slivers_mm2);
       for (std::size_t wall = 0; wall < regions.size(); ++wall) {
         const double reach_mm = (wall == 0 ? kWidth : kSpacing) / 2;
@@ -300,7 +300,7 @@ TEST(WallGaps, LeaveNoRoomForALineBesideThem) {
         const Polygons all = without_thin_parts(subtract(open, laid), narrowest_line_mm(context));
         for (const Polygon& part : subtract(all, offset(gap, 0.02))) {
           // What is left is no longer than the ends of a line.
-          const Box2 box = bounding_box({part});
+          const Box2 box = bounding_box(part);
           EXPECT_LE(distance(box.lower, box.upper), kWidth / 2);
         }
       };

@@ -29,7 +29,7 @@ Layer square(int index = 0) { return layer_of({{test::rectangle(0, 0, 10, 10), {
 /// The cells of a region's inside.
 struct Cells {
   explicit Cells(const Polygon& region)
-      : map(map_cells(anchored_cells(bounding_box({region}), kSpacing), region)), edges({region}) {
+      : map(map_cells(anchored_cells(bounding_box(region), kSpacing), region)), edges({region}) {
     for (std::uint32_t cell = 0; cell < map.grid.size(); ++cell)
       inner.push_back(map.is_inner(cell));
   }

@@ -12,7 +12,8 @@ namespace routebench {
 [[nodiscard]] double area_mm2(const Polygon& polygon);
 [[nodiscard]] double area_mm2(const Polygons& polygons);
 [[nodiscard]] double perimeter_mm(const Ring& ring);
-[[nodiscard]] double perimeter_mm(const Polygons& polygons);  ///< outer rings and holes
+[[nodiscard]] double perimeter_mm(const Polygon& polygon);  ///< outer ring and holes
+[[nodiscard]] double perimeter_mm(const Polygons& polygons);
 
 struct Box2 {
   Point2 lower;
@@ -20,7 +21,9 @@ struct Box2 {
 };
 /// Smallest box around two.
 [[nodiscard]] Box2 around(const Box2& a, const Box2& b);
-/// Smallest box around the polygons; lower > upper if there are none.
+/// Smallest box around all points; lower > upper if there are none.
+[[nodiscard]] Box2 bounding_box(const Ring& ring);
+[[nodiscard]] Box2 bounding_box(const Polygon& polygon);
 [[nodiscard]] Box2 bounding_box(const Polygons& polygons);
 
 /// Which winding numbers are inside.
