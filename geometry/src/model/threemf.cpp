@@ -2,6 +2,7 @@
 
 #include <dlfcn.h>
 
+#include <filesystem>
 #include <string>
 
 #include "routebench/geometry/error.hpp"
@@ -11,10 +12,14 @@ namespace {
 
 using Reader = decltype(routebench_read_3mf);
 
-/// From where this library lies; loaded once, for good.
+/// From the folder of this library, whatever path others are sought in; loaded once, for good.
 Reader& reader() {
   static Reader* const found = [] {
-    void* const library = dlopen(ROUTEBENCH_3MF_LIBRARY, RTLD_NOW | RTLD_LOCAL);
+    Dl_info self{};
+    dladdr(reinterpret_cast<const void*>(&read_3mf), &self);
+    const std::filesystem::path file =
+        std::filesystem::path(self.dli_fname).replace_filename(ROUTEBENCH_3MF_LIBRARY);
+    void* const library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
     void* const symbol = library != nullptr ? dlsym(library, "routebench_read_3mf") : nullptr;
     if (symbol == nullptr)
       throw Error(ErrorKind::kInternal,
