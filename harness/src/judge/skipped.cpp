@@ -164,21 +164,25 @@ class PartLedger {
   void visit_pieces(Point2 a, Point2 b, LayWith&& lay_with) const {
     const SampleGrid::Shares shares = grid_.shares_over(a, b);
     const double length_mm = distance(a, b) * (shares.leave - shares.enter);
-    const Point2 from = grid_.to_steps(lerp(a, b, shares.enter));
-    const Point2 run = grid_.to_steps(lerp(a, b, shares.leave)) - from;
+    // Rounded down, these are the nearest samples; what is between two of them is one, too.
+    const auto place = [this](Point2 p) {
+      constexpr double kRounding = 1e-6;
+      const Point2 steps = grid_.to_steps(p);
+      return Point2{
+          std::clamp(steps.x + 0.5, 0.0, static_cast<double>(grid_.columns()) - kRounding),
+          std::clamp(steps.y + 0.5, 0.0, static_cast<double>(grid_.rows()) - kRounding)};
+    };
+    const Point2 from = place(lerp(a, b, shares.enter));
+    const Point2 run = place(lerp(a, b, shares.leave)) - from;
     const auto count = static_cast<double>(
         rounded_up(grid_.to_steps(length_mm) * 2 / static_cast<double>(cell_steps_)));
-    const auto nearest = [](double steps, double last) {
-      // By way of a signed number: to an unsigned one is several instructions on most processors.
-      return static_cast<std::size_t>(
-          static_cast<std::int64_t>(std::clamp(steps + 0.5, 0.0, last)));
-    };
-    const double last_column = static_cast<double>(grid_.columns() - 1);
-    const double last_row = static_cast<double>(grid_.rows() - 1);
     const auto lay = lay_with(length_mm / count);
-    for (double i = 0; i < count; i += 1) {
-      const Point2 middle = from + ((i + 0.5) / count) * run;
-      lay(nearest(middle.x, last_column), nearest(middle.y, last_row));
+    const Point2 step = (1 / count) * run;
+    for (double i = 0.5; i < count; i += 1) {
+      const Point2 middle = from + i * step;
+      // By way of a signed number: to an unsigned one is several instructions on most processors.
+      lay(static_cast<std::size_t>(static_cast<std::int64_t>(middle.x)),
+          static_cast<std::size_t>(static_cast<std::int64_t>(middle.y)));
     }
   }
 
