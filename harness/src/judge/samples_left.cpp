@@ -11,7 +11,7 @@ SamplesLeft::SamplesLeft(BitPlane samples) : left_(std::move(samples)), rows_(le
 
 void SamplesLeft::look() {
   none_ = true;
-  removals_ = 0;
+  rows_removed_ = 0;
   for (std::size_t row = 0; row < rows_.size(); ++row) {
     rows_[row] = {};
     const BitPlane::Words used = left_.used(row);
@@ -52,9 +52,10 @@ void SamplesLeft::remove(Point2 a, Point2 b, double radius_mm) {
   if (!any_near(from, to, radius)) return;
   visit_capsule_rows(from, to, radius, grid.rows(), [this](std::size_t row, Span near) {
     left_.remove(row, near.left, near.right);
+    ++rows_removed_;
   });
-  constexpr std::size_t kRemovalsALook = 256;
-  if (++removals_ == kRemovalsALook) look();
+  // To look costs about as much as these removals did.
+  if (rows_removed_ > rows_.size()) look();
 }
 
 void SamplesLeft::remove(const Polygons& polygons, double radius_mm) {

@@ -34,7 +34,7 @@ class SamplesLeft {
 
   BitPlane left_;
   std::vector<Span> rows_;
-  std::size_t removals_ = 0;  // since the last look
+  std::size_t rows_removed_ = 0;  // since the last look
   bool none_ = true;
 };
 
