@@ -84,7 +84,7 @@ double spilled_samples(const LayerSamples& samples, const Demand& demand,
   BitPlane beads(grid);
   for (const Bead& bead : strays) {
     add_capsule(beads, bead.a, bead.b, bead.width_mm / 2);
-    const SampleGrid::Shares over = grid.shares_over(bead.a, bead.b);
+    const SampleGrid::Shares over = grid.shares_over(grid.to_steps(bead.a), grid.to_steps(bead.b));
     beyond_mm2 += (1 - (over.leave - over.enter)) * distance(bead.a, bead.b) * bead.width_mm;
   }
   SamplesLeft outside(BitPlane(
