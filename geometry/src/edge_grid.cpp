@@ -170,17 +170,29 @@ bool EdgeGrid::meets(Point2 a, Point2 b) const {
     const double other = cross(way, second - p);
     return (side > on_line && other > on_line) || (side < -on_line && other < -on_line);
   };
+  const auto any_meets = [&](std::int64_t first_cell, std::int64_t last_cell) {
+    // The items of cells that follow each other do so, too.
+    const auto begin = cells_.items.begin() + cells_.begin[static_cast<std::size_t>(first_cell)];
+    const auto end = cells_.items.begin() + cells_.begin[static_cast<std::size_t>(last_cell) + 1];
+    return std::any_of(begin, end, [&](std::uint32_t item) {
+      const Edge& edge = edges_[item];
+      return std::max(edge.a.x, edge.b.x) >= lower.x && std::min(edge.a.x, edge.b.x) <= upper.x &&
+             std::max(edge.a.y, edge.b.y) >= lower.y && std::min(edge.a.y, edge.b.y) <= upper.y &&
+             !on_one_side(a, b, edge.a, edge.b) && !on_one_side(edge.a, edge.b, a, b);
+    });
+  };
+  // Most segments are short: all cells of their box are looked at sooner than those on the way are
+  // found.
+  constexpr std::int64_t kFewCells = 2;
+  const std::int64_t first_row = row(lower.y), last_row = row(upper.y);
+  const std::int64_t first_column = column(lower.x), last_column = column(upper.x);
   bool met = false;
-  visit_cells(a, b, kOnEdgeMm, [&](std::int64_t cell) {
-    const auto c = static_cast<std::size_t>(cell);
-    for (std::uint32_t i = cells_.begin[c]; i < cells_.begin[c + 1] && !met; ++i) {
-      const Edge& edge = edges_[cells_.items[i]];
-      if (std::max(edge.a.x, edge.b.x) < lower.x || std::min(edge.a.x, edge.b.x) > upper.x ||
-          std::max(edge.a.y, edge.b.y) < lower.y || std::min(edge.a.y, edge.b.y) > upper.y)
-        continue;
-      met = !on_one_side(a, b, edge.a, edge.b) && !on_one_side(edge.a, edge.b, a, b);
-    }
-  });
+  if (last_row - first_row < kFewCells && last_column - first_column < kFewCells) {
+    for (std::int64_t r = first_row; r <= last_row && !met; ++r)
+      met = any_meets(r * column_count_ + first_column, r * column_count_ + last_column);
+  } else {
+    visit_cells(a, b, kOnEdgeMm, [&](std::int64_t cell) { met = met || any_meets(cell, cell); });
+  }
   return met;
 }
 

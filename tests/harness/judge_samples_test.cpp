@@ -127,7 +127,6 @@ TEST(JudgeSamples, ATipIsInTheDiscThere) {
 }
 
 TEST(JudgeSamples, CapsulesTakeAwayWhatTheyWouldAdd) {
-  // With a look now and then at what is left, which must not be trusted for more than it says.
   const Polygons polygons = test::random_polygons(3, 6, 10);
   const judging::SampleGrid grid(polygons, 0.5, 0.05, 1e6);
   const judging::BitPlane all(grid, polygons);
@@ -181,6 +180,39 @@ TEST(JudgeSamples, PlanesHoldExactlyThePointsInside) {
     EXPECT_NEAR(static_cast<double>(plane.count()) * grid.sample_mm2(), area_mm2(polygons),
                 0.01 * area_mm2(polygons));
   }
+}
+
+TEST(JudgeSamples, ABoxHoldsASampleIfOneOfItsPlacesIsSet) {
+  const Polygons polygons = test::random_polygons(2, 6, 10);
+  const judging::SampleGrid grid(polygons, 0.5, 0.1, 1e6);
+  const judging::BitPlane plane(grid, polygons);
+  const auto columns = static_cast<std::int64_t>(grid.columns());
+  const auto rows = static_cast<std::int64_t>(grid.rows());
+  const auto any_by_one = [&](judging::Span box_rows, judging::Span box_columns) {
+    for (std::int64_t row = std::max<std::int64_t>(box_rows.left, 0);
+         row <= std::min(box_rows.right, rows - 1); ++row)
+      for (std::int64_t column = std::max<std::int64_t>(box_columns.left, 0);
+           column <= std::min(box_columns.right, columns - 1); ++column)
+        if (plane.test(static_cast<std::size_t>(column), static_cast<std::size_t>(row)))
+          return true;
+    return false;
+  };
+  std::mt19937_64 random(11);
+  std::uniform_int_distribution<std::int64_t> size(-1, 80);
+  std::size_t with_samples = 0;
+  constexpr std::size_t kBoxes = 2000;
+  for (std::size_t i = 0; i < kBoxes; ++i) {
+    // Some reach beyond the grid, lie there as a whole or hold no place at all.
+    const std::int64_t row = std::uniform_int_distribution<std::int64_t>(-90, rows + 10)(random);
+    const std::int64_t column =
+        std::uniform_int_distribution<std::int64_t>(-90, columns + 10)(random);
+    const judging::Span box_rows{row, row + size(random) / 8};
+    const judging::Span box_columns{column, column + size(random)};
+    EXPECT_EQ(plane.any(box_rows, box_columns), any_by_one(box_rows, box_columns));
+    if (plane.any(box_rows, box_columns)) ++with_samples;
+  }
+  EXPECT_GT(with_samples, kBoxes / 10);
+  EXPECT_LT(with_samples, kBoxes * 9 / 10);
 }
 
 TEST(JudgeSamples, PlanesBeginEmptyWhateverThoseBeforeHeld) {

@@ -38,7 +38,7 @@ BitPlane::~BitPlane() {
 BitPlane::BitPlane(const SampleGrid& grid, const Polygons& polygons) : BitPlane(grid) {
   if (used_.empty() || polygons.empty()) return;
   // Every edge flips its rows from where it crosses them onwards: what is flipped an odd number of
-  // times is inside. The flips are kept as one bit each and summed along the rows at the end.
+  // times is inside. A flip changes its own word; the words after it follow at the end.
   const auto add_edge = [this](Point2 a, Point2 b) {
     if (a.y > b.y) std::swap(a, b);
     // Rows with a.y <= row < b.y: half open, so that a vertex on a row counts once.
@@ -68,14 +68,8 @@ BitPlane::BitPlane(const SampleGrid& grid, const Polygons& polygons) : BitPlane(
   for (std::size_t row = 0; row < used_.size(); ++row) {
     Word carry = 0;  // all ones while inside at a word's end
     visit_row(row, [&](std::size_t i) {
-      Word word = words_[i];
-      if (word == 0) {  // nothing changes here
-        words_[i] = carry;
-        return;
-      }
-      for (unsigned shift = 1; shift < kWordBits; shift *= 2) word ^= word << shift;
-      words_[i] = word ^ carry;
-      carry = (words_[i] >> (kWordBits - 1) & 1U) != 0 ? ~Word{0} : 0;
+      words_[i] ^= carry;
+      carry = Word{0} - (words_[i] >> (kWordBits - 1));
     });
     if (used_[row].end == row_words_) words_[(row + 1) * row_words_ - 1] &= last_mask;
   }
@@ -90,7 +84,7 @@ void BitPlane::flip_from(std::size_t row, double left) {
   }
   const auto word = static_cast<std::uint32_t>(bit / kWordBits);
   use(row, {word, word + 1});
-  words_[row * row_words_ + word] ^= Word{1} << (bit % kWordBits);
+  words_[row * row_words_ + word] ^= ~Word{0} << (bit % kWordBits);
 }
 
 std::size_t BitPlane::count() const {

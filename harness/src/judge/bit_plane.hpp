@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "judge/capsule.hpp"
 #include "judge/sample_grid.hpp"
 #include "routebench/geometry/types.hpp"
 
@@ -58,6 +59,20 @@ class BitPlane {
   [[nodiscard]] Words used(std::size_t row) const { return used_[row]; }
   [[nodiscard]] bool test(std::size_t column, std::size_t row) const {
     return (words_[row * row_words_ + column / kWordBits] >> (column % kWordBits) & 1U) != 0;
+  }
+
+  /// Whether there is a sample in a box, which may reach beyond the grid.
+  [[nodiscard]] bool any(Span rows, Span columns) const {
+    const std::int64_t first = std::max<std::int64_t>(rows.left, 0);
+    const std::int64_t last = std::min(rows.right, static_cast<std::int64_t>(grid_->rows()) - 1);
+    if (first > last) return false;
+    Word found = 0;
+    visit_words(static_cast<std::size_t>(first), columns.left, columns.right,
+                [&](std::size_t i, Word mask) {
+                  for (std::int64_t row = first; row <= last; ++row, i += row_words_)
+                    found |= words_[i] & mask;
+                });
+    return found != 0;
   }
 
   /// Adds the samples of a row from column `left` to column `right`, which may lie beyond the grid.
@@ -141,7 +156,7 @@ class BitPlane {
   /// Calls visit(place of a word, mask) for the samples of a row from `left` to `right`; returns
   /// their words.
   template <typename Visit>
-  Words visit_words(std::size_t row, std::int64_t left, std::int64_t right, Visit&& visit) {
+  Words visit_words(std::size_t row, std::int64_t left, std::int64_t right, Visit&& visit) const {
     left = std::max<std::int64_t>(left, 0);
     right = std::min(right, static_cast<std::int64_t>(grid_->columns()) - 1);
     if (left > right) return {};

@@ -57,6 +57,14 @@ void add_passes(BitPlane& once, BitPlane& twice, const Run& run, const Task& tas
   }
 }
 
+std::size_t samples_passed_twice(const SampleGrid& grid, const std::vector<Run>& runs,
+                                 const Task& task) {
+  BitPlane once(grid);
+  BitPlane twice(grid);
+  for (const Run& run : runs) add_passes(once, twice, run, task);
+  return twice.count();
+}
+
 /// Samples of the walls and dense parts that beads are over.
 std::size_t samples_under_beads(const LayerSamples& samples, const std::vector<Run>& runs) {
   const SampleGrid& grid = samples.grid;
@@ -84,7 +92,7 @@ double spilled_samples(const LayerSamples& samples, const Demand& demand,
   BitPlane beads(grid);
   for (const Bead& bead : strays) {
     add_capsule(beads, bead.a, bead.b, bead.width_mm / 2);
-    const SampleGrid::Shares over = grid.shares_over(bead.a, bead.b);
+    const SampleGrid::Shares over = grid.shares_over(grid.to_steps(bead.a), grid.to_steps(bead.b));
     beyond_mm2 += (1 - (over.leave - over.enter)) * distance(bead.a, bead.b) * bead.width_mm;
   }
   SamplesLeft outside(BitPlane(
@@ -101,10 +109,6 @@ Coverage measure_coverage(const LayerSamples& samples, std::size_t outline_sampl
   const auto share = [outline_samples](double part) {
     return part / static_cast<double>(outline_samples);
   };
-  BitPlane once(samples.grid);
-  BitPlane twice(samples.grid);
-  for (const Run& run : runs) add_passes(once, twice, run, task);
-
   const std::size_t sparse = samples.outline.count([](Word, Word s) { return s; }, samples.sparse);
   const std::size_t under_beads = samples_under_beads(samples, runs);
   const double sparse_reached =
@@ -113,7 +117,7 @@ Coverage measure_coverage(const LayerSamples& samples, std::size_t outline_sampl
           : 1;
   return {.covered = share(static_cast<double>(under_beads) +
                            static_cast<double>(sparse) * sparse_reached),
-          .doubled = share(static_cast<double>(twice.count())),
+          .doubled = share(static_cast<double>(samples_passed_twice(samples.grid, runs, task))),
           .spilled = share(spilled_samples(samples, demand, strays, task))};
 }
 

@@ -46,8 +46,7 @@ void remove_reach(SamplesLeft& samples, const std::vector<Run>& runs, double rad
   visit_pieces([&](Point2 a, Point2 b, double length_mm) {
     if (length_mm >= radius_mm) samples.remove(a, b, radius_mm);
   });
-  samples.look();
-  if (samples.none()) return;
+  if (samples.count() == 0) return;
   visit_pieces([&](Point2 a, Point2 b, double length_mm) {
     if (length_mm < radius_mm) samples.remove(a, b, radius_mm);
   });

@@ -30,9 +30,7 @@ SampleGrid::SampleGrid(const Polygons& polygons, double margin_mm, double pitch_
   rows_ = static_cast<std::size_t>(size.y / pitch_mm_) + 1;
 }
 
-SampleGrid::Shares SampleGrid::shares_over(Point2 a, Point2 b) const noexcept {
-  const Point2 from = to_steps(a);
-  const Point2 to = to_steps(b);
+SampleGrid::Shares SampleGrid::shares_over(Point2 from, Point2 to) const noexcept {
   const auto is_over = [this](Point2 p) {
     return p.x >= -0.5 && p.y >= -0.5 && p.x <= static_cast<double>(columns_) - 0.5 &&
            p.y <= static_cast<double>(rows_) - 0.5;

@@ -32,12 +32,12 @@ class SampleGrid {
   [[nodiscard]] std::size_t columns() const noexcept { return columns_; }
   [[nodiscard]] std::size_t rows() const noexcept { return rows_; }
 
-  /// Between which shares of its length a segment runs over the samples.
+  /// Between which shares of its length a segment, in steps, runs over the samples.
   struct Shares {
     double enter = 0;
     double leave = 0;  ///< equal to enter if it does not
   };
-  [[nodiscard]] Shares shares_over(Point2 a, Point2 b) const noexcept;
+  [[nodiscard]] Shares shares_over(Point2 from, Point2 to) const noexcept;
 
  private:
   // Written out, since the last digit of a library's sine may differ between machines.

@@ -2,7 +2,7 @@
 /// A set of samples from which capsules take away.
 
 #include <cstddef>
-#include <vector>
+#include <utility>
 
 #include "judge/bit_plane.hpp"
 #include "judge/capsule.hpp"
@@ -14,28 +14,20 @@ namespace routebench::judging {
 /// most capsules find none in their box and are passed over.
 class SamplesLeft {
  public:
-  explicit SamplesLeft(BitPlane samples);
+  explicit SamplesLeft(BitPlane samples) : left_(std::move(samples)) {}
 
   /// Takes all samples within radius_mm of segment ab away.
   void remove(Point2 a, Point2 b, double radius_mm);
   /// Takes all samples within radius_mm of the polygons' boundary away.
   void remove(const Polygons& polygons, double radius_mm);
 
-  /// Finds where samples are left, which happens by itself now and then. Cost linear in the plane's
-  /// words.
-  void look();
-  /// Whether nothing was left at the last look.
-  [[nodiscard]] bool none() const noexcept { return none_; }
-  [[nodiscard]] std::size_t count() const { return none_ ? 0 : left_.count(); }
+  [[nodiscard]] std::size_t count() const { return left_.count(); }
 
  private:
-  /// Whether the box of a capsule held any sample at the last look, to the word. In steps.
+  /// Whether the box of a capsule holds any sample. In steps.
   [[nodiscard]] bool any_near(Point2 a, Point2 b, double radius) const;
 
   BitPlane left_;
-  std::vector<Span> rows_;
-  std::size_t removals_ = 0;  // since the last look
-  bool none_ = true;
 };
 
 }  // namespace routebench::judging

@@ -57,6 +57,48 @@ struct SampleBox {
   }
 };
 
+/// A segment cut into pieces of equal length, where it is over a grid.
+class Pieces {
+ public:
+  /// Takes a segment, in steps, and the least number of pieces that the whole of it would be cut
+  /// to.
+  Pieces(const SampleGrid& grid, Point2 a, Point2 b, double least) {
+    const SampleGrid::Shares shares = grid.shares_over(a, b);
+    // Rounded down, these are the nearest samples; what is between two of them is one, too.
+    const auto place = [&grid, a, b](double share) {
+      constexpr double kRounding = 1e-6;
+      const Point2 p = lerp(a, b, share) + Point2{0.5, 0.5};
+      return Point2{std::clamp(p.x, 0.0, static_cast<double>(grid.columns()) - kRounding),
+                    std::clamp(p.y, 0.0, static_cast<double>(grid.rows()) - kRounding)};
+    };
+    from_ = place(shares.enter);
+    const double over = shares.leave - shares.enter;
+    count_ = static_cast<double>(rounded_up(over * least));
+    share_ = over / count_;
+    step_ = (1 / count_) * (place(shares.leave) - from_);
+  }
+
+  /// Of the segment's length, that of a piece.
+  [[nodiscard]] double share() const noexcept { return share_; }
+
+  /// Calls visit(column, row) for the sample nearest to the middle of each piece.
+  template <typename Visit>
+  void visit(Visit&& visit) const {
+    for (double i = 0.5; i < count_; i += 1) {
+      const Point2 middle = from_ + i * step_;
+      // By way of a signed number: to an unsigned one is several instructions on most processors.
+      visit(static_cast<std::size_t>(static_cast<std::int64_t>(middle.x)),
+            static_cast<std::size_t>(static_cast<std::int64_t>(middle.y)));
+    }
+  }
+
+ private:
+  Point2 from_;
+  Point2 step_;
+  double count_ = 0;
+  double share_ = 0;
+};
+
 /// What one part of a layer demands and gets, in cells of equally many samples.
 class PartLedger {
  public:
@@ -74,22 +116,29 @@ class PartLedger {
 
   /// A bead `strength` times as strong as the task's.
   void lay(Point2 a, Point2 b, double strength) {
-    if (!box_.may_hold_of(grid_.to_steps(a), grid_.to_steps(b))) return;
-    visit_pieces(a, b, [this, strength](double piece_mm) {
-      return [this, filled = samples_filled_by(piece_mm * strength)](std::size_t column,
-                                                                     std::size_t row) {
-        if (part_.test(column, row)) cell_at(laid_, column, row) += filled;
-      };
+    const Point2 from = grid_.to_steps(a);
+    const Point2 to = grid_.to_steps(b);
+    if (!box_.may_hold_of(from, to)) return;
+    const double length_mm = distance(a, b);
+    const Pieces pieces(grid_, from, to, least_pieces(length_mm));
+    const float filled = samples_filled_by(pieces.share() * length_mm * strength);
+    pieces.visit([this, filled](std::size_t column, std::size_t row) {
+      if (part_.test(column, row)) cell_at(laid_, column, row) += filled;
     });
   }
 
   /// Boundary of the part: half a line.
   void lay_boundary(const Ring& ring) {
-    for (std::size_t i = 0; i < ring.size(); ++i)
-      visit_pieces(ring[i], ring[i + 1 == ring.size() ? 0 : i + 1], [this](double piece_mm) {
-        return [this, filled = samples_filled_by(piece_mm / 2)](
-                   std::size_t column, std::size_t row) { cell_at(laid_, column, row) += filled; };
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      const Point2 a = ring[i];
+      const Point2 b = ring[i + 1 == ring.size() ? 0 : i + 1];
+      const double length_mm = distance(a, b);
+      const Pieces pieces(grid_, grid_.to_steps(a), grid_.to_steps(b), least_pieces(length_mm));
+      const float filled = samples_filled_by(pieces.share() * length_mm / 2);
+      pieces.visit([this, filled](std::size_t column, std::size_t row) {
+        cell_at(laid_, column, row) += filled;
       });
+    }
   }
 
   [[nodiscard]] double skipped_area_mm2() const {
@@ -158,28 +207,9 @@ class PartLedger {
     return word;
   }
 
-  /// Cuts segment ab into pieces, each at most half a cell long; of what is over the grid calls
-  /// lay_with(length_mm of a piece)(nearest sample's column, row) for all of them.
-  template <typename LayWith>
-  void visit_pieces(Point2 a, Point2 b, LayWith&& lay_with) const {
-    const SampleGrid::Shares shares = grid_.shares_over(a, b);
-    const double length_mm = distance(a, b) * (shares.leave - shares.enter);
-    const Point2 from = grid_.to_steps(lerp(a, b, shares.enter));
-    const Point2 run = grid_.to_steps(lerp(a, b, shares.leave)) - from;
-    const auto count = static_cast<double>(
-        rounded_up(grid_.to_steps(length_mm) * 2 / static_cast<double>(cell_steps_)));
-    const auto nearest = [](double steps, double last) {
-      // By way of a signed number: to an unsigned one is several instructions on most processors.
-      return static_cast<std::size_t>(
-          static_cast<std::int64_t>(std::clamp(steps + 0.5, 0.0, last)));
-    };
-    const double last_column = static_cast<double>(grid_.columns() - 1);
-    const double last_row = static_cast<double>(grid_.rows() - 1);
-    const auto lay = lay_with(length_mm / count);
-    for (double i = 0; i < count; i += 1) {
-      const Point2 middle = from + ((i + 0.5) / count) * run;
-      lay(nearest(middle.x, last_column), nearest(middle.y, last_row));
-    }
+  /// Of at most half a cell each.
+  [[nodiscard]] double least_pieces(double length_mm) const {
+    return grid_.to_steps(length_mm) * 2 / static_cast<double>(cell_steps_);
   }
 
   /// Every mm of line fills its distance's width.
