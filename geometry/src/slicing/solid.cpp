@@ -70,7 +70,6 @@ std::vector<std::size_t> first_of_equal_layers(const std::vector<Layer>& layers)
 struct SkinFinder::Impl {
   /// What overlays need of one layer; nothing if it is empty or does not fit on their grid.
   using Index = std::optional<overlay::RingIndex>;
-  using Inside = overlay::Inside;
 
   const std::vector<Layer>& layers;
   std::size_t reach;
