@@ -1,6 +1,6 @@
 #pragma once
 /// The way to the reader of 3MF files, which is a library of its own: libzip needs libcrypto, and
-/// to load the two takes as long as all the rest of a command's start.
+/// to load the two would take a quarter of a command's start.
 
 #include <span>
 

@@ -23,8 +23,11 @@ bool segments_meet(const Edge& a, const Edge& b) {
 /// More than two cuts can move what they cut.
 constexpr std::int32_t kNear = 4;
 
-GridBox grown(GridBox box) {
-  return {{box.lower.x - kNear, box.lower.y - kNear}, {box.upper.x + kNear, box.upper.y + kNear}};
+/// Not beyond the grid, where boxes lie that are not set.
+GridBox grown(const GridBox& box) {
+  const auto least = [](std::int32_t at) { return std::max(at - kNear, -kMaxUnits); };
+  const auto most = [](std::int32_t at) { return std::min(at + kNear, kMaxUnits); };
+  return {{least(box.lower.x), least(box.lower.y)}, {most(box.upper.x), most(box.upper.y)}};
 }
 
 bool are_near(const Edge& edge, GridPoint p) {
