@@ -1,4 +1,5 @@
-/// Laws of what overlays are made of: boxes of edges, rings that cross, and memory for a while.
+/// Laws of what overlays are made of: boxes of edges, rings that cross, loops, and memory for a
+/// while.
 
 #include <gtest/gtest.h>
 
@@ -21,6 +22,7 @@
 #include "overlay/planar_edges.hpp"
 #include "overlay/ring_index.hpp"
 #include "overlay/scratch.hpp"
+#include "overlay/small_loops.hpp"
 
 namespace routebench::overlay {
 namespace {
@@ -263,6 +265,39 @@ TEST(Overlay, DividesByDefinition) {
         EXPECT_EQ(winding_at(beyond, p).first, is_inside(winding, Inside::kFirstOnly) ? 1 : 0);
       }
     }
+}
+
+TEST(SmallLoops, ThatLieOutsideGoWithoutATrace) {
+  // What is far does not go for being small: every loop that goes lies outside all else.
+  std::mt19937_64 random(3);
+  int gone = 0;
+  for (const std::int32_t extent : {100, 10000, kMaxUnits / 2})
+    for (int round = 0; round < 3000; ++round) {
+      std::uniform_int_distribution<std::int32_t> place(-extent, extent);
+      std::uniform_int_distribution<int> corners(5, 16), share(0, 4);
+      std::pmr::vector<DrawnPoint> curve;
+      for (int k = corners(random); k > 0; --k)
+        curve.push_back({{place(random), place(random)}, share(random) > 0, true});
+      const auto drawn = [](const std::pmr::vector<DrawnPoint>& points) {
+        GridRings rings;
+        rings.begin_ring({1, 0});
+        for (const DrawnPoint& p : points) rings.add(p.at);
+        rings.end_ring();
+        return rings;
+      };
+      const GridRings before = drawn(curve);
+      const std::size_t points = curve.size();
+      SmallLoops(false, true, curve.get_allocator().resource()).drop_from(curve);
+      gone += curve.size() < points ? 1 : 0;
+      const GridRings after = drawn(curve);
+      for (int i = 0; i < 40; ++i) {
+        const GridPoint p{place(random), place(random)};
+        if (is_near_an_edge(before, p)) continue;
+        EXPECT_EQ(winding_at(after, p).first > 0, winding_at(before, p).first > 0)
+            << "round " << round << " within " << extent;
+      }
+    }
+  EXPECT_GT(gone, 100);
 }
 
 TEST(RingIndex, TellsWhatComesNear) {

@@ -23,6 +23,16 @@ struct Edge {
   return {{x0, y0}, {x1, y1}};
 }
 
+/// Whether edges have a point in common.
+[[nodiscard]] inline bool edges_meet(const Edge& a, const Edge& b) {
+  if (!box_of(a).meets(box_of(b))) return false;
+  const auto apart = [](std::int64_t s, std::int64_t t) {
+    return (s > 0 && t > 0) || (s < 0 && t < 0);
+  };
+  return !apart(turn(a.from, a.to, b.from), turn(a.from, a.to, b.to)) &&
+         !apart(turn(b.from, b.to, a.from), turn(b.from, b.to, a.to));
+}
+
 /// Lists of the edges that run through each cell. A few cells an edge.
 /// Cost   to add an edge: linear in the cells that it runs through and in the edges there.
 class EdgeCells {

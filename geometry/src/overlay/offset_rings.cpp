@@ -33,10 +33,11 @@ GridPoint moved(Vector p, Vector by) {
 /// round at least once is the result.
 class MovedBoundary {
  public:
-  MovedBoundary(bool moves_outwards, double clean, std::size_t points,
-                std::pmr::memory_resource* memory)
-      : clean_(clean), memory_(memory), small_loops_(moves_outwards, memory) {
-    curve_.reserve(points + points / 2);
+  MovedBoundary(const GridRings& rings, bool moves_outwards, double clean)
+      : clean_(clean),
+        memory_(rings.memory()),
+        small_loops_(moves_outwards, rings.rings() == 1, memory_) {
+    curve_.reserve(rings.size() + rings.size() / 2);
   }
 
   void add(std::span<const GridPoint> ring, double distance) {
@@ -314,7 +315,7 @@ std::optional<std::vector<GridPolygon>> offset_rings(const GridRings& rings,
   if (rings.rings() == 0) return std::vector<GridPolygon>{};
   std::pmr::memory_resource* const memory = rings.memory();
   Cleaner smoother(clean, memory), cleaner(clean, memory);
-  MovedBoundary boundary(distances.front() > 0, clean, rings.size(), memory);
+  MovedBoundary boundary(rings, distances.front() > 0, clean);
   for (std::uint32_t i = 0; i < rings.rings(); ++i) {
     std::span<const GridPoint> ring = rings.ring(i);
     if (smoother.clean(ring)) ring = smoother.kept();  // so near, points make mitres that are noise

@@ -7,19 +7,6 @@
 namespace routebench::overlay {
 namespace {
 
-bool segments_meet(const Edge& a, const Edge& b) {
-  if (std::max(a.from.x, a.to.x) < std::min(b.from.x, b.to.x) ||
-      std::max(b.from.x, b.to.x) < std::min(a.from.x, a.to.x) ||
-      std::max(a.from.y, a.to.y) < std::min(b.from.y, b.to.y) ||
-      std::max(b.from.y, b.to.y) < std::min(a.from.y, a.to.y))
-    return false;
-  const auto apart = [](std::int64_t s, std::int64_t t) {
-    return (s > 0 && t > 0) || (s < 0 && t < 0);
-  };
-  return !apart(turn(a.from, a.to, b.from), turn(a.from, a.to, b.to)) &&
-         !apart(turn(b.from, b.to, a.from), turn(b.from, b.to, a.to));
-}
-
 /// More than two cuts can move what they cut.
 constexpr std::int32_t kNear = 4;
 
@@ -74,12 +61,12 @@ bool RingIndex::holds(GridPoint p) const {
 bool RingIndex::meets_any_of(const RingIndex& other) const {
   if (!cells_)
     return other.boxes_.any_meeting_pair(boxes_, [&](std::uint32_t e, std::uint32_t own) {
-      return segments_meet(other.edge(e), edge(own));
+      return edges_meet(other.edge(e), edge(own));
     });
   for (std::uint32_t e = 0; e < other.rings_.size(); ++e) {
     const Edge it = other.edge(e);
     if (!cells_->cover(it.from) || !cells_->cover(it.to)) return true;
-    if (cells_->any_near(it, [&](std::uint32_t own) { return segments_meet(it, edge(own)); }))
+    if (cells_->any_near(it, [&](std::uint32_t own) { return edges_meet(it, edge(own)); }))
       return true;
   }
   return false;
@@ -90,7 +77,7 @@ bool RingIndex::comes_near(const RingIndex& other) const {
   for (std::uint32_t e = 0; e < rings_.size(); ++e) around.set(e, grown(boxes_[e]));
   return other.boxes_.any_meeting_pair(around, [&](std::uint32_t f, std::uint32_t e) {
     const Edge a = edge(e), b = other.edge(f);
-    return segments_meet(a, b) || are_near(a, b.from) || are_near(a, b.to) || are_near(b, a.from) ||
+    return edges_meet(a, b) || are_near(a, b.from) || are_near(a, b.to) || are_near(b, a.from) ||
            are_near(b, a.to);
   });
 }

@@ -9,6 +9,7 @@ namespace routebench::overlay {
 namespace {
 
 constexpr std::size_t kMostEdges = 12;
+constexpr std::size_t kFewPoints = 256;  // of a curve, all of which may be looked at for each loop
 
 double twice_area(const std::pmr::vector<DrawnPoint>& curve) {
   double sum = 0;
@@ -17,15 +18,20 @@ double twice_area(const std::pmr::vector<DrawnPoint>& curve) {
   return sum;
 }
 
-/// Begins a curve at the end of its longest edge, which is hardly ever part of a small loop.
-void begin_after_longest_edge(std::pmr::vector<DrawnPoint>& curve) {
-  std::size_t begin = 0;
-  double longest = 0;
-  for (std::size_t i = 0, before = curve.size() - 1; i < curve.size(); before = i++) {
-    const double x = curve[i].at.x - curve[before].at.x, y = curve[i].at.y - curve[before].at.y;
-    if (x * x + y * y <= longest) continue;
-    longest = x * x + y * y;
-    begin = i;
+/// Begins a curve half-way along its longest stretch, in points, between ways to corners: small
+/// loops run round corners. Takes one with such a way.
+void begin_far_from_corners(std::pmr::vector<DrawnPoint>& curve) {
+  const std::size_t n = curve.size();
+  std::size_t first = 0;
+  while (curve[first].ends_side) ++first;
+  std::size_t begin = 0, longest = 0;
+  for (std::size_t i = 1, last = 0; i <= n; ++i) {
+    if (curve[(first + i) % n].ends_side) continue;
+    if (i - last > longest) {
+      longest = i - last;
+      begin = (first + last + longest / 2) % n;
+    }
+    last = i;
   }
   std::rotate(curve.begin(), curve.begin() + static_cast<std::ptrdiff_t>(begin), curve.end());
 }
@@ -45,23 +51,30 @@ void SmallLoops::drop_from(std::pmr::vector<DrawnPoint>& curve) {
   // Of what turns the same way as loops that may go, such as holes that grow, the ring itself must
   // not be taken for the loop.
   const double largest = std::abs(twice_area(curve)) / 2;
-  begin_after_longest_edge(curve);
+  const bool looks_at_all = is_only_ring_ && !turns_left_ && curve.size() <= kFewPoints;
+  begin_far_from_corners(curve);
+  curve.push_back(curve.front());
   kept_.clear();
   kept_.reserve(curve.size());
   corners_.clear();
   first_ = 0;
   keep(curve[0]);
-  for (std::size_t i = 1; i <= curve.size(); ++i) {
-    const DrawnPoint& end = curve[i < curve.size() ? i : 0];
+  for (std::size_t i = 1; i < curve.size(); ++i) {
+    const DrawnPoint& end = curve[i];
     while (const std::optional<Loop> loop = loop_closed_by(end)) {
       const bool turns_left = loop->twice_area > 0;
-      if (loop->is_far || turns_left != turns_left_ || std::abs(loop->twice_area) > largest) {
+      const bool is_small = !loop->is_far && std::abs(loop->twice_area) <= largest;
+      const auto is_no_part = [&] {
+        return looks_at_all && winds_right(*loop, end.at) &&
+               lies_outside(*loop, std::span(curve).subspan(i));
+      };
+      if (turns_left != turns_left_ || !(is_small || is_no_part())) {
         first_ = kept_.size();  // it stays, and so does what it is a part of
         break;
       }
       cut_off(*loop);
     }
-    if (i < curve.size()) keep(end);
+    if (i + 1 < curve.size()) keep(end);
   }
   std::swap(curve, kept_);
 }
@@ -76,6 +89,56 @@ void SmallLoops::cut_off(const Loop& loop) {
   kept_.resize(loop.begin + 1);
   while (!corners_.empty() && corners_.back() > loop.begin) corners_.pop_back();
   keep({loop.crossing});
+}
+
+/// Whether a loop winds left nowhere, being locally convex or simple, and its two sides do not
+/// enter it where they go on beyond their crossing. Takes one that turns right, and the point that
+/// the closing side leads to.
+bool SmallLoops::winds_right(const Loop& loop, GridPoint end) const {
+  const std::size_t first = loop.begin, last = kept_.size() - 1;
+  const auto at = [&](std::size_t i) { return i <= last ? kept_[i].at : end; };
+  const auto meet = [&](std::size_t e, std::size_t f) {
+    return edges_meet({at(e), at(e + 1)}, {at(f), at(f + 1)});
+  };
+  for (std::size_t e = first + 1; e < last; ++e)
+    if ((e > first + 1 && meet(first, e)) || (e + 1 < last && meet(e, last))) return false;
+  bool is_convex = turn(at(first), at(first + 1), end) > 0;
+  for (std::size_t i = first; is_convex && i < last; ++i)
+    is_convex = turn(at(i), at(i + 1), at(i + 2)) < 0;
+  if (is_convex) return true;
+  for (std::size_t e = first + 1; e < last; ++e)
+    for (std::size_t f = e + 2; f < last; ++f)
+      if (meet(e, f)) return false;
+  return true;
+}
+
+/// Whether a loop lies apart from the rest of the curve, which does not run round it. Takes the
+/// point that the closing side leads to, and all from there on up to the first point.
+bool SmallLoops::lies_outside(const Loop& loop, std::span<const DrawnPoint> ahead) const {
+  GridBox box{loop.crossing, loop.crossing};
+  for (std::size_t i = loop.begin + 1; i < kept_.size(); ++i) {
+    const GridPoint p = kept_[i].at;
+    box = {{std::min(box.lower.x, p.x), std::min(box.lower.y, p.y)},
+           {std::max(box.upper.x, p.x), std::max(box.upper.y, p.y)}};
+  }
+  // By a ray to the left of a point of the loop, infinitesimally above it.
+  const GridPoint inside = kept_[loop.begin + 1].at;
+  int winding = 0;
+  const auto count = [&](GridPoint a, GridPoint b) {
+    if (a.y > inside.y && b.y <= inside.y && turn(a, b, inside) > 0) ++winding;
+    if (a.y <= inside.y && b.y > inside.y && turn(a, b, inside) < 0) --winding;
+  };
+  const auto passes_by = [&](GridPoint a, GridPoint b) {
+    count(a, b);
+    return !box_of(Edge{a, b}).meets(box);
+  };
+  for (std::size_t i = 0; i < loop.begin; ++i)
+    if (!passes_by(kept_[i].at, kept_[i + 1].at)) return false;
+  for (std::size_t i = 1; i < ahead.size(); ++i)
+    if (!passes_by(ahead[i - 1].at, ahead[i].at)) return false;
+  count(kept_[loop.begin].at, loop.crossing);
+  count(loop.crossing, ahead.front().at);
+  return winding <= 0;
 }
 
 /// The shortest one. Its two sides cross, and it has been to a corner.

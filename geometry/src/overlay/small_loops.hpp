@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "overlay/grid_rings.hpp"
@@ -21,14 +22,17 @@ struct DrawnPoint {
 /// distance. Of each the point is left where it crosses itself. Whatever else crosses stays, so
 /// that it takes an overlay to tell what is inside; but most curves cross nowhere after that.
 ///
-/// Where the boundary moves inwards such loops turn right, and have the inside on neither hand.
-/// Outwards they turn left, and are inside what the rest encloses.
+/// Where the boundary moves inwards such loops turn right, and have the inside on neither hand; so
+/// do others that turn right and lie apart from the rest, however large. Outwards they turn left,
+/// and are inside what the rest encloses.
 class SmallLoops {
  public:
-  SmallLoops(bool moves_outwards, std::pmr::memory_resource* memory)
-      : turns_left_(moves_outwards), kept_(memory), corners_(memory) {}
+  /// Takes whether the boundary is one ring.
+  SmallLoops(bool moves_outwards, bool is_only_ring, std::pmr::memory_resource* memory)
+      : turns_left_(moves_outwards), is_only_ring_(is_only_ring), kept_(memory), corners_(memory) {}
 
-  /// Cost  some ten comparisons for each edge that follows soon after a way to a corner.
+  /// Cost  some ten comparisons for each edge that follows soon after a way to a corner; in a
+  ///       curve of a few hundred points, some for each point and loop.
   void drop_from(std::pmr::vector<DrawnPoint>& curve);
 
  private:
@@ -40,10 +44,13 @@ class SmallLoops {
   };
 
   [[nodiscard]] std::optional<Loop> loop_closed_by(const DrawnPoint& end) const;
+  [[nodiscard]] bool winds_right(const Loop& loop, GridPoint end) const;
+  [[nodiscard]] bool lies_outside(const Loop& loop, std::span<const DrawnPoint> ahead) const;
   void keep(const DrawnPoint& point);
   void cut_off(const Loop& loop);
 
   bool turns_left_;
+  bool is_only_ring_;
   std::pmr::vector<DrawnPoint> kept_;
   std::pmr::vector<std::size_t> corners_;  ///< of the points kept those that end no side
   std::size_t first_ = 0;                  ///< edge kept from which on loops may go
