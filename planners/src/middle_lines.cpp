@@ -268,6 +268,19 @@ const Room& Rooms::around(const Box2& places, double farthest_mm) {
   return everywhere_ ? *everywhere_ : everywhere_.emplace(in_grids(sides_));
 }
 
+Room::Edge::Edge(Point2 a, Point2 b) : from(a), way(b - a) {
+  const double squared = dot(way, way);
+  shares_a_mm2 = squared > 0 ? 1 / squared : 0;
+}
+
+double Room::Edge::squared_distance(Point2 p) const {
+  const Point2 at = p - from;
+  // Without a division and, as compilers see it, without a branch.
+  const double share = std::min(std::max(dot(at, way) * shares_a_mm2, 0.0), 1.0);
+  const Point2 off = at - share * way;
+  return dot(off, off);
+}
+
 std::optional<double> Room::radius_mm(Point2 p, double limit_mm) const {
   std::optional<double> least;
   for (const Side& side : sides_) {
@@ -277,8 +290,7 @@ std::optional<double> Room::radius_mm(Point2 p, double limit_mm) const {
       mm = side.grid->distance_to_edge_mm(p, farthest_mm);
     } else {
       double squared = std::numeric_limits<double>::infinity();
-      for (const auto& [a, b] : side.edges)
-        squared = std::min(squared, squared_distance(p, nearest_on_segment(p, a, b)));
+      for (const Edge& edge : side.edges) squared = std::min(squared, edge.squared_distance(p));
       if (squared <= farthest_mm * farthest_mm) mm = std::sqrt(squared);
     }
     if (mm) least = std::max(*mm - side.taken_mm, 0.0);

@@ -15,10 +15,19 @@ namespace routebench {
 /// How far places in a narrow part are from what is taken along its sides.
 class Room {
  public:
+  /// Many places ask how far they are from it.
+  struct Edge {
+    Point2 from;
+    Point2 way;
+    double shares_a_mm2;  ///< of the way, for its product with another vector
+
+    Edge(Point2 a, Point2 b);
+    [[nodiscard]] double squared_distance(Point2 p) const;
+  };
   /// Edges along which as much is taken: in a list if they are few, else in a grid.
   struct Side {
     double taken_mm;
-    std::vector<std::pair<Point2, Point2>> edges;
+    std::vector<Edge> edges;
     std::optional<EdgeGrid> grid;
   };
 
