@@ -16,6 +16,7 @@ namespace {
 
 // Of 1 + the cosine of a corner's turn: 120 degrees. Offsets cut sharper corners off.
 constexpr double kSharpest = 0.5;
+constexpr double kFarthestTimes = 2;  // the distance: so far the inset is from such a corner
 // The inset of a corner begins at half the tangent of its turn from it, which is about this much.
 constexpr double kCornerDistances = 2;
 constexpr std::size_t kLookAhead = 3;  // edges: a few small ones may lead away at first
@@ -23,6 +24,8 @@ constexpr int kSearches = 8;           // over the whole inset, for one ring of 
 // With more places in doubt, and that share of all corners, the whole area is.
 constexpr std::size_t kManyDoubts = 32;
 constexpr std::size_t kLargeShare = 8;
+// What is no larger is looked at as a whole: not much of it would be left out about one place.
+constexpr double kSmallMargins = 3;
 
 /// A place that follows a point along rings.
 class Follower {
@@ -174,6 +177,7 @@ class RingProof {
                                ? inset_.follow(p, squared_reach(1))
                                : std::numeric_limits<double>::infinity();
     if (nearest <= squared_reach(1)) return true;
+    if (nearest > squared_reach(kFarthestTimes) && searches_ > kSearches) return false;
     const double reach = squared_reach(corner_reach(p, i));
     if (nearest <= reach) return true;
     return ++searches_ <= kSearches && inset_.search(p, reach);
@@ -279,6 +283,8 @@ std::vector<Box2> doubtful_places(const Polygons& inset, const Polygons& area, d
   std::vector<Box2> boxes;
   const Point2 margin{margin_mm, margin_mm};
   const Box2 bounds = bounding_box(area);
+  const bool is_small = std::max(bounds.upper.x - bounds.lower.x, bounds.upper.y - bounds.lower.y) <
+                        kSmallMargins * margin_mm;
   const auto all = [&]() -> std::vector<Box2> {
     return {{snap(bounds.lower - margin), snap(bounds.upper + margin)}};
   };
@@ -290,6 +296,7 @@ std::vector<Box2> doubtful_places(const Polygons& inset, const Polygons& area, d
   }
   const auto visit = [&](Point2 p, bool has_inset) {
     if (has_inset) return true;
+    if (is_small) return false;
     if (holds(add({snap(p - margin), snap(p + margin)}, boxes), bounds)) return false;
     return ++doubts < kManyDoubts || doubts * kLargeShare < corners;
   };

@@ -20,9 +20,9 @@ namespace {
 /// A line is laid in a strip if it gives at least so much of the material that is needed. In
 /// shorter strips it lacks its ends, and it costs a travel.
 constexpr double kEnough = 0.85;
-/// How much farther a wall may be from the one before than it should, where no line fits between
-/// them: at the bottom of a stub about a sixth of a millimetre deep.
-constexpr double kStubMm = 0.03;
+/// A wall may be farther from the one before than it should by so much of the least width of a line
+/// between them: no line fits there, as at the bottom of a stub that is hardly deeper.
+constexpr double kStubShare = 0.6;
 /// What sides that would coincide are kept apart by: more than offsets are cleaned of.
 constexpr double kSideMm = 0.015;
 /// The sides of a strip are so much of its length apart along the boundary, where that is at its
@@ -106,6 +106,16 @@ TakenSides sides_between(const Polygons& before, double before_mm, const Polygon
   return sides;
 }
 
+/// What beads of neighbouring lines overlap with their round sides.
+double overlap_mm(const PlanContext& context) { return context.line_width_mm - context.spacing_mm; }
+
+/// The narrowest gap that a line is laid in: that fills it or, between walls, overlaps with them as
+/// much as they do with each other.
+double narrowest_gap_mm(bool is_first, const PlanContext& context) {
+  const double line_mm = narrowest_line_mm(context);
+  return is_first ? line_mm : std::max(line_mm - overlap_mm(context), line_mm / 4);
+}
+
 }  // namespace
 
 std::vector<std::vector<TakenSides>> wall_gaps(const Polygons& polygons,
@@ -121,10 +131,11 @@ std::vector<std::vector<TakenSides>> wall_gaps(const Polygons& polygons,
     const Polygons& region = wall < regions.size() ? regions[wall] : none;
     const double before_mm = is_first ? 0 : half_mm;
     const double wall_mm = is_first ? context.line_width_mm / 2 : half_mm;
+    const double stub_mm = kStubShare * narrowest_gap_mm(is_first, context);
     gaps.emplace_back();
     // Where nothing is narrow, the wall's place grows back to where it came from.
     for (const Box2& box :
-         doubtful_places(region, before, before_mm + wall_mm, kStubMm, margin_mm)) {
+         doubtful_places(region, before, before_mm + wall_mm, stub_mm, margin_mm)) {
       // All that reaches into it: between walls nothing is open between the one before and the box.
       const Polygons laid = clipped(region, is_first ? grown(box, margin_mm) : box);
       gaps.back().push_back(sides_between(clipped(before, box), before_mm, laid, wall_mm));
@@ -135,22 +146,20 @@ std::vector<std::vector<TakenSides>> wall_gaps(const Polygons& polygons,
 
 std::vector<Stroke> gap_lines(const Polygons& polygons, const std::vector<Polygons>& regions,
                               int count, double widest_mm, const PlanContext& context) {
-  const CentreLineRule outside{.min_width_mm = narrowest_line_mm(context),
+  const CentreLineRule outside{.min_width_mm = narrowest_gap_mm(true, context),
                                .max_width_mm = widest_mm,
                                .min_length_mm = context.line_width_mm / 2,
                                .width = CentreLineWidth::kInscribed};
-  // Beads of neighbouring lines overlap with their round sides, and so do these with the walls.
-  const double overlap_mm = context.line_width_mm - context.spacing_mm;
   CentreLineRule between = outside;
-  between.min_width_mm = std::max(outside.min_width_mm - overlap_mm, outside.min_width_mm / 4);
-  between.max_width_mm -= overlap_mm;
+  between.min_width_mm = narrowest_gap_mm(false, context);
+  between.max_width_mm -= overlap_mm(context);
   std::vector<std::vector<TakenSides>> gaps = wall_gaps(polygons, regions, count, context);
   std::vector<Stroke> strokes;
   for (std::size_t wall = 0; wall < gaps.size(); ++wall) {
     const bool is_first = wall == 0;
     for (TakenSides& sides : gaps[wall])
       for (Stroke& stroke : centre_lines(std::move(sides), is_first ? outside : between, context)) {
-        if (!is_first) stroke.width_mm += overlap_mm;
+        if (!is_first) stroke.width_mm += overlap_mm(context);
         strokes.push_back(std::move(stroke));
       }
   }
@@ -203,8 +212,7 @@ Polygons left_open(const Polygons& area, const Polygons& laid, double reach_mm) 
 
 double left_inside_mm(const Polygon& region, const PlanContext& context) {
   constexpr double kLeastMm = 0.01;
-  const double overlap_mm = context.line_width_mm - context.spacing_mm;
-  const double line_mm = narrowest_line_mm(context) - overlap_mm;
+  const double line_mm = narrowest_line_mm(context) - overlap_mm(context);
   const double left_mm = strip_width_mm(region) - context.spacing_mm;
   if (left_mm < kLeastMm || left_mm >= line_mm) return 0;
   // No wider anywhere.
