@@ -18,9 +18,9 @@ struct Edge {
 };
 
 [[nodiscard]] inline GridBox box_of(const Edge& edge) {
-  const auto [x0, x1] = std::minmax(edge.from.x, edge.to.x);
-  const auto [y0, y1] = std::minmax(edge.from.y, edge.to.y);
-  return {{x0, y0}, {x1, y1}};
+  // Not by std::minmax, which compilers turn into branches that nobody can foresee.
+  const GridPoint a = edge.from, b = edge.to;
+  return {{std::min(a.x, b.x), std::min(a.y, b.y)}, {std::max(a.x, b.x), std::max(a.y, b.y)}};
 }
 
 /// Whether edges have a point in common.
