@@ -52,15 +52,13 @@ class EdgeBoxes {
   /// Cost  two instructions a box.
   template <typename Visit>
   void visit_meeting(const GridBox& box, std::uint32_t edges, Visit&& visit) const {
+    if (groups_.empty()) return visit_bits(meeting(box, edges), 0, visit);
     const std::uint32_t eights = (edges + 7) / 8;
     const auto look_at = [&](std::uint32_t eight) {
-      visit_bits(eights_[eight].meeting(box), 8 * eight, edges, visit);
+      visit_bits(first_of(eights_[eight].meeting(box), edges - 8 * eight), 8 * eight, visit);
     };
-    if (groups_.empty())
-      for (std::uint32_t eight = 0; eight < eights; ++eight) look_at(eight);
-    else
-      for (std::uint32_t first = 0; first < eights; first += 8)
-        visit_bits(groups_[first / 8].meeting(box), first, eights, look_at);
+    for (std::uint32_t first = 0; first < eights; first += 8)
+      visit_bits(first_of(groups_[first / 8].meeting(box), eights - first), first, look_at);
   }
 
   /// Calls visit(edge, other) for each two whose boxes meet, the other before the edge.
@@ -74,16 +72,16 @@ class EdgeBoxes {
     }
     // Only edges that meet the box around eight others look at those.
     const auto look_at = [&](std::uint32_t eight, std::uint32_t other) {
-      visit_bits(eights_[eight].meeting(box_of_eight(other)), 8 * eight, edges,
-                 [&](std::uint32_t edge) {
-                   visit_bits(eights_[other].meeting((*this)[edge]), 8 * other, edge,
-                              [&](std::uint32_t before) { visit(edge, before); });
+      visit_bits(first_of(eights_[eight].meeting(box_of_eight(other)), edges - 8 * eight),
+                 8 * eight, [&](std::uint32_t edge) {
+                   visit_bits(first_of(eights_[other].meeting((*this)[edge]), edge - 8 * other),
+                              8 * other, [&](std::uint32_t before) { visit(edge, before); });
                  });
     };
     for (std::uint32_t eight = 0; 8 * eight < edges; ++eight) {
       const GridBox box = box_of_eight(eight);
       for (std::uint32_t first = 0; first <= eight; first += 8)
-        visit_bits(groups_[first / 8].meeting(box), first, eight + 1,
+        visit_bits(first_of(groups_[first / 8].meeting(box), eight + 1 - first), first,
                    [&](std::uint32_t other) { look_at(eight, other); });
     }
   }
@@ -93,10 +91,11 @@ class EdgeBoxes {
   [[nodiscard]] bool any_meeting_pair(const EdgeBoxes& others, IsIt&& is_it) const {
     bool found = false;
     const auto look_at = [&](std::uint32_t eight, std::uint32_t other) {
-      visit_eight(eights_[eight].meeting(others.box_of_eight(other)), eight, [&](std::uint32_t e) {
-        visit_eight(others.eights_[other].meeting((*this)[e]), other,
-                    [&](std::uint32_t f) { found = found || is_it(e, f); });
-      });
+      visit_bits(eights_[eight].meeting(others.box_of_eight(other)), 8 * eight,
+                 [&](std::uint32_t e) {
+                   visit_bits(others.eights_[other].meeting((*this)[e]), 8 * other,
+                              [&](std::uint32_t f) { found = found || is_it(e, f); });
+                 });
     };
     for (std::uint32_t eight = 0; eight < eights_.size() && !found; ++eight) {
       const GridBox box = box_of_eight(eight);
@@ -105,7 +104,7 @@ class EdgeBoxes {
         for (std::uint32_t other = 0; other < others.eights_.size(); ++other) look(other);
       else
         for (std::uint32_t group = 0; group < others.groups_.size(); ++group)
-          visit_eight(others.groups_[group].meeting(box), group, look);
+          visit_bits(others.groups_[group].meeting(box), 8 * group, look);
     }
     return found;
   }
@@ -119,17 +118,23 @@ class EdgeBoxes {
     return {value, value, value, value, value, value, value, value};
   }
 
-  /// Calls visit(number) for the numbers below `end` whose bits, of `begin` and on, are set.
+  /// Calls visit(begin + number) for each bit that is set. One loop over many bits ends where
+  /// nobody can foresee less often than many over few.
   template <typename Visit>
-  static void visit_bits(std::uint32_t bits, std::uint32_t begin, std::uint32_t end,
-                         Visit&& visit) {
-    if (end - begin < 8) bits &= (1U << (end - begin)) - 1;
+  static void visit_bits(std::uint64_t bits, std::uint32_t begin, Visit&& visit) {
     for (; bits != 0; bits &= bits - 1)
       visit(begin + static_cast<std::uint32_t>(std::countr_zero(bits)));
   }
-  template <typename Visit>
-  static void visit_eight(std::uint32_t bits, std::uint32_t eight, Visit&& visit) {
-    visit_bits(bits, 8 * eight, 8 * eight + 8, visit);
+  static std::uint64_t first_of(std::uint64_t bits, std::uint32_t count) {
+    return count < 64 ? bits & ((std::uint64_t{1} << count) - 1) : bits;
+  }
+
+  /// A bit for each of the first `edges` whose box meets another one. Takes few edges.
+  [[nodiscard]] std::uint64_t meeting(const GridBox& box, std::uint32_t edges) const {
+    std::uint64_t bits = 0;
+    for (std::uint32_t begin = 0; begin < edges; begin += 8)
+      bits |= std::uint64_t{eights_[begin / 8].meeting(box)} << begin;
+    return first_of(bits, edges);
   }
 
   struct alignas(16) Eight {

@@ -98,8 +98,9 @@ class MovedBoundary {
   /// there was such an edge.
   bool drop_used_edges() {
     const std::size_t n = corners_.size();
-    const auto may_go = [&](std::size_t i) {
-      return i + 1 < n && edges_[i].left < 0 && edges_[i].used > 0 && edges_[i + 1].used > 0;
+    const auto may_go = [&](std::size_t i) {  // & for &&: nobody can foresee these
+      return i + 1 < n &&
+             ((edges_[i].left < 0) & (edges_[i].used > 0) & (edges_[i + 1].used > 0)) != 0;
     };
     std::size_t first = 0;
     while (first < n && !may_go(first)) ++first;
