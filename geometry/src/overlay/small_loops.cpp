@@ -25,14 +25,15 @@ void begin_far_from_corners(std::pmr::vector<DrawnPoint>& curve) {
   std::size_t first = 0;
   while (curve[first].ends_side) ++first;
   std::size_t begin = 0, longest = 0;
-  for (std::size_t i = 1, last = 0; i <= n; ++i) {
-    if (curve[(first + i) % n].ends_side) continue;
+  for (std::size_t i = first + 1, last = first; i <= first + n; ++i) {
+    if (curve[i < n ? i : i - n].ends_side) continue;
     if (i - last > longest) {
       longest = i - last;
-      begin = (first + last + longest / 2) % n;
+      begin = last + longest / 2;
     }
     last = i;
   }
+  if (begin >= n) begin -= n;
   std::rotate(curve.begin(), curve.begin() + static_cast<std::ptrdiff_t>(begin), curve.end());
 }
 
