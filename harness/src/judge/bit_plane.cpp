@@ -1,7 +1,7 @@
 #include "judge/bit_plane.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <cstdint>
 #include <utility>
 
 #include "judge/rounding.hpp"
@@ -61,27 +61,28 @@ BitPlane::BitPlane(const SampleGrid& grid, const Polygons& polygons) : BitPlane(
 void BitPlane::flip_right_of(Point2 a, Point2 b) {
   if (a.y > b.y) std::swap(a, b);
   // Rows with a.y <= row < b.y: half open, so that a vertex on a row counts once.
-  const double first = std::max(std::ceil(a.y), 0.0);
-  const double end = std::min(std::ceil(b.y), static_cast<double>(grid_->rows()));
+  const std::int64_t first = std::max<std::int64_t>(rounded_up(a.y), 0);
+  const std::int64_t end = std::min(rounded_up(b.y), static_cast<std::int64_t>(grid_->rows()));
   if (first >= end) return;
   const LineShape line{.x = a.x, .y = a.y, .slope = (b.x - a.x) / (b.y - a.y)};
-  const auto strip_of = [this](double x) {
-    const double column = std::clamp(x, 0.0, static_cast<double>(grid_->columns()));
-    return static_cast<std::size_t>(rounded_up(column)) / kWordBits;
+  const auto strip_at = [&](std::int64_t row) {
+    const std::int64_t column = rounded_up(line.at(static_cast<double>(row)));
+    return std::min(static_cast<std::size_t>(std::max<std::int64_t>(column, 0)) / kWordBits,
+                    strips());
   };
-  const auto flip = row_loops().flip;
-  const auto end_row = static_cast<std::size_t>(static_cast<std::int64_t>(end));
-  for (auto row = static_cast<std::size_t>(static_cast<std::int64_t>(first)); row < end_row;) {
+  for (std::int64_t row = first; row < end;) {
     // So few that the line is in few strips.
-    constexpr std::size_t kRowsAtOnce = 64;
-    const std::size_t end_of_some = std::min(row + kRowsAtOnce, end_row);
-    const auto [first_strip, last_strip] =
-        std::minmax({strip_of(line.at(static_cast<double>(row))),
-                     strip_of(line.at(static_cast<double>(end_of_some - 1)))});
+    constexpr std::int64_t kRowsAtOnce = 64;
+    const std::int64_t end_of_some = std::min(row + kRowsAtOnce, end);
+    const auto [first_strip, last_strip] = std::minmax({strip_at(row), strip_at(end_of_some - 1)});
     // Beyond the last strip its partner's flips go on to the end of the row.
     const std::size_t end_strip = std::min(last_strip + 1, strips());
-    flip(line, row, end_of_some, first_strip, end_strip, words_.data(), grid_->rows());
-    for (std::size_t strip = first_strip; strip < end_strip; ++strip) use(strip, row, end_of_some);
+    const auto begin_row = static_cast<std::size_t>(row);
+    const auto end_row = static_cast<std::size_t>(end_of_some);
+    row_loops().flip(line, begin_row, end_row, first_strip, end_strip, words_.data(),
+                     grid_->rows());
+    for (std::size_t strip = first_strip; strip < end_strip; ++strip)
+      use(strip, begin_row, end_row);
     row = end_of_some;
   }
 }
