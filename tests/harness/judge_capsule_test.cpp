@@ -71,7 +71,7 @@ TestCapsule random_capsule(std::mt19937_64& random, int kind, GridSize grid) {
 TEST(JudgeCapsules, HoldExactlyThePointsInReach) {
   constexpr GridSize kGrid{100, 300};
   std::mt19937_64 random(3);
-  for (int round = 0; round < 210; ++round) {
+  for (int round = 0; round < 1400; ++round) {
     const auto [a, b, radius] = random_capsule(random, round, kGrid);
     std::vector<std::vector<bool>> met(kGrid.rows, std::vector<bool>(kGrid.columns));
     std::size_t next = 0;
@@ -103,7 +103,7 @@ TEST(JudgeCapsules, HoldExactlyThePointsInReach) {
 TEST(JudgeCapsules, WithoutTheirStartHoldAllBeyondTheDiscThere) {
   constexpr GridSize kGrid{100, 300};
   std::mt19937_64 random(9);
-  for (int round = 0; round < 210; ++round) {
+  for (int round = 0; round < 1400; ++round) {
     const auto [a, b, radius] = random_capsule(random, round, kGrid);
     std::vector<std::vector<bool>> met(kGrid.rows, std::vector<bool>(kGrid.columns));
     std::vector<std::vector<bool>> left_whole = met;
@@ -189,6 +189,33 @@ std::vector<const RowLoops*> other_loops() {
   std::vector<const RowLoops*> loops = judging::runnable_row_loops();
   loops.erase(loops.begin());
   return loops;
+}
+
+TEST(JudgeRowLoops, CutExactlyTheDisc) {
+  std::mt19937_64 random(28);
+  std::uniform_real_distribution<double> unit(0, 1);
+  for (const RowLoops* loops : judging::runnable_row_loops())
+    for (int round = 0; round < 200; ++round) {
+      Point2 centre{100 * unit(random), 60 * unit(random)};
+      if (round % 3 == 0) centre.x = std::round(centre.x);
+      const double radius = round % 2 == 0 ? 40 * unit(random) : unit(random);
+      RowSpans rows;
+      rows.first_row = 5;
+      rows.count = 1 + random() % RowSpans::kMost;
+      const std::size_t begin = random() % rows.count;
+      const std::size_t end = begin + 1 + random() % (rows.count - begin);
+      loops->cut_disc({centre.x, centre.y, radius * radius}, begin, end, rows);
+      EXPECT_TRUE(rows.is_cut);
+      for (std::size_t i = 0; i < end; ++i)
+        for (std::int64_t column = -50; column < 150; ++column) {
+          const Point2 p{static_cast<double>(column), static_cast<double>(rows.first_row + i)};
+          const double away = distance(p, centre);
+          if (std::abs(away - radius) < 1e-6) continue;
+          EXPECT_EQ(rows.cut_left[i] <= column && column < rows.cut_end[i],
+                    i >= begin && away < radius)
+              << loops->name;
+        }
+    }
 }
 
 TEST(JudgeRowLoops, DrawTheSameOnEveryProcessor) {

@@ -105,7 +105,8 @@ TEST(JudgeSamples, PlanesHoldExactlyThePointsInside) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     const Polygons polygons = test::random_polygons(seed, 6, 10);
     const EdgeGrid edges(polygons);
-    const judging::SampleGrid grid(polygons, 0.5, 0.13, 1e6);
+    // From two strips of columns to ten: some lie inside from end to end.
+    const judging::SampleGrid grid(polygons, 0.5, seed % 2 == 0 ? 0.13 : 0.02, 1e6);
     const judging::BitPlane plane(grid, polygons);
     std::size_t inside = 0;
     std::mt19937_64 random(seed);
@@ -128,6 +129,20 @@ TEST(JudgeSamples, PlanesHoldExactlyThePointsInside) {
     EXPECT_GT(inside, 100U);
     EXPECT_NEAR(static_cast<double>(plane.count()) * grid.sample_mm2(), area_mm2(polygons),
                 0.01 * area_mm2(polygons));
+  }
+}
+
+TEST(JudgeSamples, PlanesHoldTheInsideOfEdgesAlongTheirRows) {
+  // No row crosses two sides of such a rectangle.
+  for (const double turn : {0.3, 0.3 + 1e-12, 0.3 + 1e-4}) {
+    const Point2 along = 20 * Point2{std::cos(turn), std::sin(turn)};
+    const Point2 across = 5 * Point2{-std::sin(turn), std::cos(turn)};
+    const Polygons polygons{{.outer = {{0, 0}, along, along + across, across}, .holes = {}}};
+    const judging::SampleGrid grid(polygons, 1, 0.05, 1e6);
+    const judging::BitPlane plane(grid, polygons);
+    EXPECT_NEAR(static_cast<double>(plane.count()) * grid.sample_mm2(), 100, 1) << turn;
+    const Point2 middle = grid.to_steps(0.5 * (along + across));
+    EXPECT_TRUE(plane.test(static_cast<std::size_t>(middle.x), static_cast<std::size_t>(middle.y)));
   }
 }
 

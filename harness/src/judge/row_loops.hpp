@@ -83,9 +83,9 @@ struct RowLoops {
   bool (*add_counting)(const RowSpans& spans, std::uint64_t* words, std::uint64_t* again,
                        std::size_t rows);
 
-  /// Flips in rows [begin, end), the columns from a line on that are in the word in
-  /// which the line is: columns less than 0 count as 0. The line is nowhere in these rows beyond
-  /// strips [first_strip, end_strip).
+  /// Flips in rows [begin, end) the columns from a line on, as far as they are in the word that the
+  /// line meets (the first one if it is left of the grid), if that is one of strips
+  /// [first_strip, end_strip).
   void (*flip)(const LineShape& line, std::size_t begin, std::size_t end, std::size_t first_strip,
                std::size_t end_strip, std::uint64_t* words, std::size_t rows);
   /// Flips all bits of those words of a strip whose carry is set, as all bits or none; then carry
