@@ -4,13 +4,12 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <vector>
 
 #include "judge/row_loops.hpp"
 #include "judge/row_spans.hpp"
 #include "judge/sample_grid.hpp"
-#include "judge/spans.hpp"
+#include "judge/span.hpp"
 #include "routebench/geometry/types.hpp"
 
 namespace routebench::judging {

@@ -1,24 +1,24 @@
 #include "judge/capsule.hpp"
 
-#include <cmath>
-#include <cstdint>
-#include <utility>
-
-#include "judge/rounding.hpp"
-#include "routebench/geometry/vec.hpp"
+#include <algorithm>
 
 namespace routebench::judging {
+namespace {
+
+/// Which of some rows a row is, or else the first one or the end.
+std::size_t place_in(const RowSpans& rows, std::int64_t row) {
+  return static_cast<std::size_t>(std::clamp<std::int64_t>(
+      row - static_cast<std::int64_t>(rows.first_row), 0, static_cast<std::int64_t>(rows.count)));
+}
+
+}  // namespace
 
 void Capsule::cut_start(RowSpans& rows) const noexcept {
   const DiscShape start{.x = begins_low_ ? shape_.low_x : shape_.high_x,
                         .y = begins_low_ ? shape_.low_y : shape_.high_y,
                         .square = shape_.square};
-  const auto place = [&rows](std::int64_t row) {
-    return static_cast<std::size_t>(std::clamp<std::int64_t>(
-        row - static_cast<std::int64_t>(rows.first_row), 0, static_cast<std::int64_t>(rows.count)));
-  };
-  const std::size_t begin = place(rounded_up(start.y - radius_));
-  const std::size_t end = place(rounded_down(start.y + radius_) + 1);
+  const std::size_t begin = place_in(rows, rounded_up(start.y - radius_));
+  const std::size_t end = place_in(rows, rounded_down(start.y + radius_) + 1);
   if (begin < end) row_loops().cut_disc(start, begin, end, rows);
 }
 
@@ -50,10 +50,6 @@ bool Capsule::fill(RowSpans& rows, std::size_t columns) const noexcept {
   rows.is_cut = false;
   set_words(rows, columns);
   if (rows.first_word >= rows.end_word) return false;
-  const auto place = [&rows](std::int64_t row) {
-    return static_cast<std::size_t>(std::clamp<std::int64_t>(
-        row - static_cast<std::int64_t>(rows.first_row), 0, static_cast<std::int64_t>(rows.count)));
-  };
   const RowLoops& loops = row_loops();
   // Rows at which both ends are on straight sides take no square root, if they are worth a loop of
   // their own.
@@ -61,8 +57,8 @@ bool Capsule::fill(RowSpans& rows, std::size_t columns) const noexcept {
   std::size_t begin = 0;
   std::size_t end = 0;
   if (rows.count >= kFew) {
-    begin = place(rounded_up(std::max(shape_.left.begin, shape_.right.begin)));
-    end = place(rounded_down(std::min(shape_.left.end, shape_.right.end)) + 1);
+    begin = place_in(rows, rounded_up(std::max(shape_.left.begin, shape_.right.begin)));
+    end = place_in(rows, rounded_down(std::min(shape_.left.end, shape_.right.end)) + 1);
   }
   if (begin + kFew <= end) {
     if (begin > 0) loops.rows(shape_, columns, 0, begin, rows);
