@@ -176,8 +176,20 @@ constexpr std::uint64_t kInWord = kWordBits - 1;
 /// Of words whose first column is `begin`, the columns before an end.
 WordLanes columns_before(WholeLanes end, std::int64_t begin) {
   const WholeLanes count = end - begin;
+#if defined(__SSE2__) && !defined(__AVX2__)
+  // Neither shifts nor comparisons of this size are among what these do in vectors.
+  WordLanes columns{};
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    const std::int64_t k = count[lane];
+    const std::uint64_t some = ~(~std::uint64_t{0} << (static_cast<std::uint64_t>(k) & kInWord));
+    const std::uint64_t up_to_all = k > 0 ? some : 0;
+    columns[lane] = k >= std::int64_t{kWordBits} ? ~std::uint64_t{0} : up_to_all;
+  }
+  return columns;
+#else
   const WordLanes some = ~(~WordLanes{} << (words_of(count) & kInWord));
   return (some & words_of(count > 0)) | words_of(count >= std::int64_t{kWordBits});
+#endif
 }
 
 /// Calls visit(place of the first word, mask) for some rows at once of all that spans hold.
