@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <random>
 #include <vector>
@@ -20,110 +21,60 @@
 namespace routebench {
 namespace {
 
-TEST(JudgeSamples, CapsuleRowsHoldExactlyThePointsInReach) {
-  std::mt19937_64 random(3);
-  std::uniform_real_distribution<double> place(-5, 45);
-  std::uniform_real_distribution<double> size(0.2, 12);
-  for (int round = 0; round < 200; ++round) {
-    Point2 a{place(random), place(random)};
-    Point2 b{place(random), place(random)};
-    if (round % 5 == 1) b.x = a.x;
-    if (round % 5 == 2) b.y = a.y;
-    if (round % 5 == 3) b = a;
-    if (round % 5 == 4) b = a + 1e-9 * (b - a);
-    const double radius = size(random);
-    std::vector<judging::Span> rows(40);
-    std::size_t next = 0;
-    judging::visit_capsule_rows(a, b, radius, rows.size(),
-                                [&](std::size_t row, judging::Span span) {
-                                  EXPECT_GE(row, next);  // each once, upwards
-                                  next = row + 1;
-                                  rows.at(row) = span;
-                                });
-    for (std::size_t row = 0; row < rows.size(); ++row)
-      for (int x = -20; x < 60; ++x) {
-        const Point2 p{static_cast<double>(x), static_cast<double>(row)};
-        const double away = distance(p, nearest_on_segment(p, a, b));
-        if (std::abs(away - radius) > 1e-6) {
-          EXPECT_EQ(rows[row].left <= x && x <= rows[row].right, away < radius);
-        }
-        if (std::abs(distance(p, a) - radius) > 1e-6) {
-          const judging::Span disc = judging::disc_row(a.x, p.y - a.y, radius);
-          EXPECT_EQ(disc.left <= x && x <= disc.right, distance(p, a) < radius);
-        }
-      }
-  }
+/// All points within radius_mm of segment ab.
+void draw(judging::BitPlane& plane, Point2 a, Point2 b, double radius_mm,
+          judging::BitPlane* again = nullptr) {
+  const judging::SampleGrid& grid = plane.grid();
+  judging::Capsule(judging::Segment(grid.to_steps(a), grid.to_steps(b)), grid.to_steps(radius_mm))
+      .visit(grid.size(), [&](const judging::RowSpans& rows) {
+        if (again != nullptr)
+          plane.add_counting(rows, *again);
+        else
+          plane.add(rows);
+      });
 }
 
-TEST(JudgeSamples, LongCapsulesHaveStraightSides) {
-  // However long, steep, nearly level or far away: no error adds up along the sides.
-  std::mt19937_64 random(5);
-  std::uniform_real_distribution<double> unit(0, 1);
-  std::size_t sides = 0;
-  for (int round = 0; round < 400; ++round) {
-    const double scale = std::pow(10.0, 1 + round % 7);
-    const Point2 a{scale * unit(random), 4000 * unit(random)};
-    const Point2 b{scale * unit(random), round % 3 == 0 ? a.y + unit(random) : 4000 * unit(random)};
-    const double radius = 2 + 6 * unit(random);
-    const Point2 run = b - a;
-    judging::visit_capsule_rows(a, b, radius, 4000, [&](std::size_t row, judging::Span span) {
-      const double share = (static_cast<double>(row) - a.y) / run.y;
-      const double half_width = radius * distance(a, b) / std::abs(run.y);
-      const double rise = radius * std::abs(run.x) / distance(a, b) / std::abs(run.y);
-      if (share < rise || share > 1 - rise) return;  // on an arc
-      const Point2 middle = lerp(a, b, share);
-      const double off = 1e-12 * (scale + half_width) + 1e-9;
-      EXPECT_GE(static_cast<double>(span.left), middle.x - half_width - off);
-      EXPECT_LT(static_cast<double>(span.left), middle.x - half_width + 1 + off);
-      EXPECT_LE(static_cast<double>(span.right), middle.x + half_width + off);
-      EXPECT_GT(static_cast<double>(span.right), middle.x + half_width - 1 - off);
-      ++sides;
-    });
+TEST(JudgeSamples, PlanesHoldWhatIsDrawnOnceAndMore) {
+  const Polygons polygons = test::random_polygons(4, 3, 5);
+  const judging::SampleGrid grid(polygons, 0.5, 0.05, 1e6);
+  const Box2 box = bounding_box(polygons);
+  std::mt19937_64 random(17);
+  // Some reach beyond the grid.
+  std::uniform_real_distribution<double> x(box.lower.x - 2, box.upper.x + 2);
+  std::uniform_real_distribution<double> y(box.lower.y - 2, box.upper.y + 2);
+  judging::BitPlane added(grid);
+  judging::BitPlane once(grid);
+  judging::BitPlane more(grid);
+  std::vector<int> times(grid.columns() * grid.rows());
+  std::size_t count_once = 0;
+  std::size_t count_more = 0;
+  for (int i = 0; i < 40; ++i) {
+    const Point2 a{x(random), y(random)};
+    const Point2 b{x(random), y(random)};
+    const double radius_mm = i % 10 == 0 ? 2.5 : 0.2;
+    judging::BitPlane one(grid);
+    draw(one, a, b, radius_mm);
+    draw(added, a, b, radius_mm);
+    draw(once, a, b, radius_mm, &more);
+    for (std::size_t row = 0; row < grid.rows(); ++row)
+      for (std::size_t column = 0; column < grid.columns(); ++column)
+        if (one.test(column, row)) ++times[row * grid.columns() + column];
   }
-  EXPECT_GT(sides, 100000U);
-}
-
-TEST(JudgeSamples, CapsulesBeyondAllMeasureCoverTheirRows) {
-  constexpr double kFar = 2e10;  // steps in 1e9 mm
-  for (const double rise : {0.0, 1e-10, 1e-6, 1.0, 100.0, kFar}) {
-    int rows = 0;
-    judging::visit_capsule_rows({-kFar, 50.5 - rise / 2}, {kFar, 50.5 + rise / 2}, kFar / 2, 101,
-                                [&](std::size_t, judging::Span span) {
-                                  EXPECT_LE(span.left, 0) << rise;
-                                  EXPECT_GE(span.right, 4000000) << rise;
-                                  ++rows;
-                                });
-    EXPECT_EQ(rows, 101) << rise;
-  }
-}
-
-TEST(JudgeSamples, ATipIsInTheDiscThere) {
-  std::mt19937_64 random(9);
-  std::uniform_real_distribution<double> place(5, 35);
-  for (int round = 0; round < 200; ++round) {
-    const Point2 a{place(random), place(random)};
-    Point2 b{place(random), place(random)};
-    if (round % 4 == 1) b.x = a.x;
-    if (round % 4 == 2) b.y = a.y;
-    if (round % 4 == 3) b = lerp(a, b, 0.05);
-    const double radius = 0.2 + 5 * place(random) / 35;
-    std::vector<judging::Span> all(40);
-    std::vector<judging::Span> rest(40);
-    judging::CapsuleRows rows(a, b, radius);
-    rows.visit(40, [&](std::size_t row, judging::Span span) { all[row] = span; });
-    rows.leave_tip(a);
-    rows.visit(40, [&](std::size_t row, judging::Span span) { rest[row] = span; });
-    for (std::size_t row = 0; row < all.size(); ++row) {
-      const double dy = static_cast<double>(row) - a.y;
-      const judging::Span left = rest[row].empty() ? judging::disc_row(a.x, dy, radius) : rest[row];
-      if (all[row].empty()) {
-        EXPECT_TRUE(left.empty());
-      } else {
-        EXPECT_EQ(left.left, all[row].left);
-        EXPECT_EQ(left.right, all[row].right);
-      }
+  for (std::size_t row = 0; row < grid.rows(); ++row)
+    for (std::size_t column = 0; column < grid.columns(); ++column) {
+      const int drawn = times[row * grid.columns() + column];
+      EXPECT_EQ(added.test(column, row), drawn > 0);
+      EXPECT_EQ(once.test(column, row), drawn > 0);
+      EXPECT_EQ(more.test(column, row), drawn > 1);
+      count_once += drawn > 0 ? 1 : 0;
+      count_more += drawn > 1 ? 1 : 0;
     }
-  }
+  EXPECT_GT(count_more, 0U);
+  EXPECT_GT(count_once, count_more);
+  EXPECT_EQ(once.count(), count_once);
+  EXPECT_EQ(more.count(), count_more);
+  EXPECT_EQ(added.count_in(more), count_more);
+  EXPECT_EQ(added.count_in(once, more), count_once - count_more);
 }
 
 TEST(JudgeSamples, CapsulesTakeAwayWhatTheyWouldAdd) {
@@ -142,12 +93,10 @@ TEST(JudgeSamples, CapsulesTakeAwayWhatTheyWouldAdd) {
     for (int i = 0; i < count; ++i) {
       const Point2 a{x(random), y(random)};
       const Point2 b = lerp(a, {x(random), y(random)}, 0.05);
-      judging::visit_capsule_rows(
-          grid.to_steps(a), grid.to_steps(b), grid.to_steps(0.4), grid.rows(),
-          [&](std::size_t row, judging::Span span) { added.add(row, span.left, span.right); });
+      draw(added, a, b, 0.4);
       left.remove(a, b, 0.4);
     }
-    EXPECT_EQ(left.count(), all.count([](Word p, Word q) { return p & ~q; }, added)) << count;
+    EXPECT_EQ(left.count(), all.count() - all.count_in(added)) << count;
     EXPECT_EQ(left.count() == 0, count == kEnoughForAll);
   }
 }
@@ -156,7 +105,8 @@ TEST(JudgeSamples, PlanesHoldExactlyThePointsInside) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     const Polygons polygons = test::random_polygons(seed, 6, 10);
     const EdgeGrid edges(polygons);
-    const judging::SampleGrid grid(polygons, 0.5, 0.13, 1e6);
+    // From two strips of columns to ten: some lie inside from end to end.
+    const judging::SampleGrid grid(polygons, 0.5, seed % 2 == 0 ? 0.13 : 0.02, 1e6);
     const judging::BitPlane plane(grid, polygons);
     std::size_t inside = 0;
     std::mt19937_64 random(seed);
@@ -179,6 +129,20 @@ TEST(JudgeSamples, PlanesHoldExactlyThePointsInside) {
     EXPECT_GT(inside, 100U);
     EXPECT_NEAR(static_cast<double>(plane.count()) * grid.sample_mm2(), area_mm2(polygons),
                 0.01 * area_mm2(polygons));
+  }
+}
+
+TEST(JudgeSamples, PlanesHoldTheInsideOfEdgesAlongTheirRows) {
+  // No row crosses two sides of such a rectangle.
+  for (const double turn : {0.3, 0.3 + 1e-12, 0.3 + 1e-4}) {
+    const Point2 along = 20 * Point2{std::cos(turn), std::sin(turn)};
+    const Point2 across = 5 * Point2{-std::sin(turn), std::cos(turn)};
+    const Polygons polygons{{.outer = {{0, 0}, along, along + across, across}, .holes = {}}};
+    const judging::SampleGrid grid(polygons, 1, 0.05, 1e6);
+    const judging::BitPlane plane(grid, polygons);
+    EXPECT_NEAR(static_cast<double>(plane.count()) * grid.sample_mm2(), 100, 1) << turn;
+    const Point2 middle = grid.to_steps(0.5 * (along + across));
+    EXPECT_TRUE(plane.test(static_cast<std::size_t>(middle.x), static_cast<std::size_t>(middle.y)));
   }
 }
 
@@ -221,16 +185,13 @@ TEST(JudgeSamples, PlanesBeginEmptyWhateverThoseBeforeHeld) {
     // Without a margin: rows that are inside up to their ends.
     const judging::SampleGrid grid(polygons, 0, 0.11 / static_cast<double>(seed), 1e6);
     const judging::BitPlane empty(grid);
-    EXPECT_EQ(empty.count([](auto) { return ~judging::BitPlane::Word{0}; }), 0U);
-    for (std::size_t row = 0; row < grid.rows(); ++row)
-      EXPECT_TRUE(std::all_of(empty.row(row), empty.row(row) + (grid.columns() + 63) / 64,
-                              [](auto word) { return word == 0; }));
+    EXPECT_EQ(empty.count(), 0U);
+    for (std::size_t strip = 0; strip < empty.strips(); ++strip)
+      for (std::size_t row = 0; row < grid.rows(); ++row) EXPECT_EQ(empty.word(strip, row), 0U);
     judging::BitPlane plane(grid, polygons);
     judging::BitPlane twice(grid);
-    for (std::size_t row = 0; row < grid.rows(); ++row) {
-      plane.add(row, 3, 90);
-      plane.add_counting(row, 40, 1e9, twice);
-    }
+    const Box2 box = bounding_box(polygons);
+    draw(plane, box.lower, box.upper, 3, &twice);
     EXPECT_GT(twice.count(), 0U);
   }
 }

@@ -1,7 +1,7 @@
 #include "judge/bit_plane.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <cstdint>
 #include <utility>
 
 #include "judge/rounding.hpp"
@@ -19,76 +19,100 @@ std::vector<std::vector<BitPlane::Word>>& cleared_words() {
 }  // namespace
 
 BitPlane::BitPlane(const SampleGrid& grid)
-    : grid_(&grid), row_words_((grid.columns() + kWordBits - 1) / kWordBits), used_(grid.rows()) {
+    : grid_(&grid),
+      used_((grid.columns() + kWordBits - 1) / kWordBits, Rows{.first = grid.rows(), .end = 0}) {
   std::vector<std::vector<Word>>& cleared = cleared_words();
   if (!cleared.empty()) {
     words_ = std::move(cleared.back());
     cleared.pop_back();
   }
-  if (words_.size() < row_words_ * grid.rows()) words_.resize(row_words_ * grid.rows());
+  const std::size_t size = strips() * grid.rows() + StripWords::kRoom;
+  if (words_.size() < size) words_.resize(size);
 }
 
 BitPlane::~BitPlane() {
   if (words_.empty()) return;  // moved away
-  for (std::size_t row = 0; row < used_.size(); ++row)
-    visit_row(row, [this](std::size_t i) { words_[i] = 0; });
+  for (std::size_t strip = 0; strip < strips(); ++strip)
+    if (const Rows used = used_[strip]; used.first < used.end)
+      std::fill_n(words_.data() + place(strip, used.first), used.end - used.first, Word{0});
   cleared_words().push_back(std::move(words_));
 }
 
 BitPlane::BitPlane(const SampleGrid& grid, const Polygons& polygons) : BitPlane(grid) {
   if (used_.empty() || polygons.empty()) return;
-  // Every edge flips its rows from where it crosses them onwards: what is flipped an odd number of
-  // times is inside. A flip changes its own word; the words after it follow at the end.
-  const auto add_edge = [this](Point2 a, Point2 b) {
-    if (a.y > b.y) std::swap(a, b);
-    // Rows with a.y <= row < b.y: half open, so that a vertex on a row counts once.
-    const double first = std::max(std::ceil(a.y), 0.0);
-    const double end = std::min(std::ceil(b.y), static_cast<double>(grid_->rows()));
-    if (first >= end) return;
-    const double slope = (b.x - a.x) / (b.y - a.y);
-    for (auto row = static_cast<std::size_t>(first); row < static_cast<std::size_t>(end); ++row)
-      flip_from(row, a.x + (static_cast<double>(row) - a.y) * slope);
-  };
-  const auto add_ring = [&](const Ring& ring) {
+  const auto flip_right_of_ring = [&](const Ring& ring) {
     if (ring.empty()) return;
     Point2 previous = grid_->to_steps(ring.back());
     for (const Point2 p : ring) {
       const Point2 next = grid_->to_steps(p);
-      add_edge(previous, next);
+      flip_right_of(previous, next);
       previous = next;
     }
   };
   for (const Polygon& polygon : polygons) {
-    add_ring(polygon.outer);
-    for (const Ring& hole : polygon.holes) add_ring(hole);
+    flip_right_of_ring(polygon.outer);
+    for (const Ring& hole : polygon.holes) flip_right_of_ring(hole);
   }
+  fill_between_flips();
+}
 
-  const std::size_t tail = grid_->columns() % kWordBits;
-  const Word last_mask = tail == 0 ? ~Word{0} : ~(~Word{0} << tail);
-  for (std::size_t row = 0; row < used_.size(); ++row) {
-    Word carry = 0;  // all ones while inside at a word's end
-    visit_row(row, [&](std::size_t i) {
-      words_[i] ^= carry;
-      carry = Word{0} - (words_[i] >> (kWordBits - 1));
-    });
-    if (used_[row].end == row_words_) words_[(row + 1) * row_words_ - 1] &= last_mask;
+/// Flips the rows that an edge crosses from there onwards: what is flipped an odd number of times
+/// in all is inside. A flip changes its own word; the words after it follow at the end.
+void BitPlane::flip_right_of(Point2 a, Point2 b) {
+  if (a.y > b.y) std::swap(a, b);
+  // Rows with a.y <= row < b.y: half open, so that a vertex on a row counts once.
+  const std::int64_t first = std::max<std::int64_t>(rounded_up(a.y), 0);
+  const std::int64_t end = std::min(rounded_up(b.y), static_cast<std::int64_t>(grid_->rows()));
+  if (first >= end) return;
+  const LineShape line{.x = a.x, .y = a.y, .slope = (b.x - a.x) / (b.y - a.y)};
+  const auto strip_at = [&](std::int64_t row) {
+    const std::int64_t column = rounded_up(line.at(static_cast<double>(row)));
+    return std::min(static_cast<std::size_t>(std::max<std::int64_t>(column, 0)) / kWordBits,
+                    strips());
+  };
+  for (std::int64_t row = first; row < end;) {
+    // So few that the line is in few strips.
+    constexpr std::int64_t kRowsAtOnce = 64;
+    const std::int64_t end_of_some = std::min(row + kRowsAtOnce, end);
+    const auto [first_strip, last_strip] = std::minmax({strip_at(row), strip_at(end_of_some - 1)});
+    // Beyond the last strip its partner's flips go on to the end of the row.
+    const std::size_t end_strip = std::min(last_strip + 1, strips());
+    const auto begin_row = static_cast<std::size_t>(row);
+    const auto end_row = static_cast<std::size_t>(end_of_some);
+    row_loops().flip(line, begin_row, end_row, first_strip, end_strip, words_.data(),
+                     grid_->rows());
+    for (std::size_t strip = first_strip; strip < end_strip; ++strip)
+      use(strip, begin_row, end_row);
+    row = end_of_some;
   }
 }
 
-void BitPlane::flip_from(std::size_t row, double left) {
-  const auto bit = static_cast<std::size_t>(rounded_up(std::max(left, 0.0)));
-  if (bit >= grid_->columns()) {
-    // Its partner's samples go on to the end of the row.
-    used_[row].end = static_cast<std::uint32_t>(row_words_);
-    return;
+void BitPlane::fill_between_flips() {
+  const auto fill = row_loops().fill;
+  // Rows that are inside at the end of the strip before.
+  std::vector<Word> carry(grid_->rows());
+  Rows carried{.first = grid_->rows(), .end = 0};
+  for (std::size_t strip = 0; strip < strips(); ++strip) {
+    if (carried.first < carried.end) use(strip, carried.first, carried.end);
+    const Rows used = used_[strip];
+    if (used.first >= used.end) continue;
+    fill(words_.data() + place(strip, used.first), carry.data() + used.first,
+         used.end - used.first);
+    carried = used;
+    while (carried.first < carried.end && carry[carried.first] == 0) ++carried.first;
+    while (carried.first < carried.end && carry[carried.end - 1] == 0) --carried.end;
   }
-  const auto word = static_cast<std::uint32_t>(bit / kWordBits);
-  use(row, {word, word + 1});
-  words_[row * row_words_ + word] ^= ~Word{0} << (bit % kWordBits);
+  if (const std::size_t tail = grid_->columns() % kWordBits; tail != 0)
+    for (std::size_t row = used_.back().first; row < used_.back().end; ++row)
+      words_[place(strips() - 1, row)] &= ~(~Word{0} << tail);
 }
 
-std::size_t BitPlane::count() const {
-  return count([](Word word) { return word; });
+std::size_t BitPlane::count_in(const BitPlane* with, const BitPlane* without) const {
+  const auto words_of = [](const BitPlane* plane) {
+    return plane == nullptr ? nullptr : plane->words_.data();
+  };
+  return row_loops().count({words_.data(), grid_->rows(), strips(), used_.data()}, words_of(with),
+                           words_of(without));
 }
 
 }  // namespace routebench::judging

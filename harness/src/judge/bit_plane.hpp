@@ -4,32 +4,27 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <vector>
 
-#include "judge/capsule.hpp"
+#include "judge/row_loops.hpp"
+#include "judge/row_spans.hpp"
 #include "judge/sample_grid.hpp"
+#include "judge/span.hpp"
 #include "routebench/geometry/types.hpp"
 
 namespace routebench::judging {
 
-/// Samples of one grid, 64 in a word, rows beginning at a word. The grid must outlive the plane.
+/// Samples of one grid, strip by strip as in StripWords. The grid must outlive the plane.
 ///
-/// Of every row a plane knows between which words it may have samples: all but making it for the
+/// Of every strip a plane knows between which rows it may have samples: all but making it for the
 /// first time on a thread costs no more than what lies between.
 class BitPlane {
  public:
   using Word = std::uint64_t;
-  static constexpr std::size_t kWordBits = 64;
+  using Rows = StripWords::Rows;
+  static constexpr std::size_t kWordBits = judging::kWordBits;
 
-  /// Words of a row, from the first to before the end.
-  struct Words {
-    std::uint32_t first = std::numeric_limits<std::uint32_t>::max();
-    std::uint32_t end = 0;
-
-    [[nodiscard]] bool empty() const noexcept { return first >= end; }
-  };
-
+  /// No samples.
   explicit BitPlane(const SampleGrid& grid);
 
   /// The samples inside polygons. Cost linear in the samples' words and the rows that edges cross.
@@ -40,12 +35,12 @@ class BitPlane {
   template <typename Combine, typename... Planes>
   BitPlane(const BitPlane& plane, Combine&& word_of, const Planes&... others)
       : BitPlane(*plane.grid_) {
-    for (std::size_t row = 0; row < plane.used_.size(); ++row) {
-      used_[row] = plane.used_[row];
-      plane.visit_row(row, [&](std::size_t i) {
+    used_ = plane.used_;
+    for (std::size_t strip = 0; strip < used_.size(); ++strip)
+      for (std::size_t row = used_[strip].first; row < used_[strip].end; ++row) {
+        const std::size_t i = place(strip, row);
         words_[i] = plane.words_[i] & word_of(plane.words_[i], others.words_[i]...);
-      });
-    }
+      }
   }
 
   BitPlane(BitPlane&&) noexcept = default;
@@ -54,11 +49,14 @@ class BitPlane {
 
   [[nodiscard]] const SampleGrid& grid() const noexcept { return *grid_; }
 
-  [[nodiscard]] const Word* row(std::size_t row) const { return words_.data() + row * row_words_; }
-  /// Where row() may have samples.
-  [[nodiscard]] Words used(std::size_t row) const { return used_[row]; }
+  [[nodiscard]] std::size_t strips() const noexcept { return used_.size(); }
+  /// Where a strip may have samples: of these rows first may be beyond end.
+  [[nodiscard]] Rows used(std::size_t strip) const { return used_[strip]; }
+  [[nodiscard]] Word word(std::size_t strip, std::size_t row) const {
+    return words_[place(strip, row)];
+  }
   [[nodiscard]] bool test(std::size_t column, std::size_t row) const {
-    return (words_[row * row_words_ + column / kWordBits] >> (column % kWordBits) & 1U) != 0;
+    return (word(column / kWordBits, row) >> (column % kWordBits) & 1U) != 0;
   }
 
   /// Whether there is a sample in a box, which may reach beyond the grid.
@@ -66,122 +64,87 @@ class BitPlane {
     const std::int64_t first = std::max<std::int64_t>(rows.left, 0);
     const std::int64_t last = std::min(rows.right, static_cast<std::int64_t>(grid_->rows()) - 1);
     if (first > last) return false;
+    const auto count = static_cast<std::size_t>(last - first + 1);
     Word found = 0;
-    visit_words(static_cast<std::size_t>(first), columns.left, columns.right,
-                [&](std::size_t i, Word mask) {
-                  for (std::int64_t row = first; row <= last; ++row, i += row_words_)
-                    found |= words_[i] & mask;
-                });
+    visit_strips(columns.left, columns.right, [&](std::size_t strip, Word mask) {
+      const Word* const words = words_.data() + place(strip, static_cast<std::size_t>(first));
+      Word in_strip = 0;
+      for (std::size_t i = 0; i < count; ++i) in_strip |= words[i];
+      found |= in_strip & mask;
+    });
     return found != 0;
   }
 
   /// Adds the samples of a row from column `left` to column `right`, which may lie beyond the grid.
   void add(std::size_t row, std::int64_t left, std::int64_t right) {
-    use(row,
-        visit_words(row, left, right, [this](std::size_t i, Word mask) { words_[i] |= mask; }));
+    visit_strips(left, right, [this, row](std::size_t strip, Word mask) {
+      words_[place(strip, row)] |= mask;
+      use(strip, row, row + 1);
+    });
+  }
+
+  void add(const RowSpans& spans) {
+    row_loops().add(spans, words_.data(), grid_->rows());
+    use(spans);
   }
 
   /// Takes the samples away that `add` would add.
-  void remove(std::size_t row, std::int64_t left, std::int64_t right) {
-    visit_words(row, left, right, [this](std::size_t i, Word mask) { words_[i] &= ~mask; });
-  }
+  void remove(const RowSpans& spans) { row_loops().remove(spans, words_.data(), grid_->rows()); }
 
   /// Adds samples as `add` does; those that were there already are added to `again` as well.
-  void add_counting(std::size_t row, std::int64_t left, std::int64_t right, BitPlane& again) {
-    Word met = 0;
-    const Words words =
-        visit_words(row, left, right, [this, &again, &met](std::size_t i, Word mask) {
-          // Most samples are passed once: the other plane's memory is left alone.
-          if (const Word both = words_[i] & mask; both != 0) {
-            again.words_[i] |= both;
-            met |= both;
-          }
-          words_[i] |= mask;
-        });
-    use(row, words);
-    if (met != 0) again.use(row, words);
+  void add_counting(const RowSpans& spans, BitPlane& again) {
+    if (row_loops().add_counting(spans, words_.data(), again.words_.data(), grid_->rows()))
+      again.use(spans);
+    use(spans);
   }
 
-  [[nodiscard]] std::size_t count() const;
-
-  /// Number of samples here for which `word_of(word of this, word of others...)` is set.
-  template <typename Combine, typename... Planes>
-  [[nodiscard]] std::size_t count(Combine&& word_of, const Planes&... others) const {
-    // Counting the bits of a word is a call on plain processors; counts of bytes are added up for
-    // some words together, which compilers turn into vector instructions.
-    constexpr std::size_t kTogether = 16;  // up to 31: a byte holds 255
-    std::size_t set = 0;
-    for (std::size_t row = 0; row < used_.size(); ++row) {
-      if (used_[row].empty()) continue;
-      const std::size_t row_end = row * row_words_ + used_[row].end;
-      for (std::size_t i = row * row_words_ + used_[row].first; i < row_end;) {
-        const std::size_t end = std::min(i + kTogether, row_end);
-        Word bytes = 0;
-        for (; i < end; ++i)
-          bytes += bits_of_bytes(words_[i] & word_of(words_[i], others.words_[i]...));
-        set += sum_of_bytes(bytes);
-      }
-    }
-    return set;
+  [[nodiscard]] std::size_t count() const { return count_in(nullptr, nullptr); }
+  /// Number of samples that another plane has, too.
+  [[nodiscard]] std::size_t count_in(const BitPlane& with) const {
+    return count_in(&with, nullptr);
+  }
+  /// The same less those that a third one has.
+  [[nodiscard]] std::size_t count_in(const BitPlane& with, const BitPlane& without) const {
+    return count_in(&with, &without);
   }
 
  private:
-  void flip_from(std::size_t row, double left);
+  [[nodiscard]] std::size_t place(std::size_t strip, std::size_t row) const {
+    return strip * grid_->rows() + row;
+  }
+  [[nodiscard]] std::size_t count_in(const BitPlane* with, const BitPlane* without) const;
+  void flip_right_of(Point2 a, Point2 b);
+  void fill_between_flips();
 
-  void use(std::size_t row, Words words) {
-    Words& used = used_[row];
-    used.first = std::min(used.first, words.first);
-    used.end = std::max(used.end, words.end);
+  /// Notes that a strip may have samples in some rows.
+  void use(std::size_t strip, std::size_t first, std::size_t end) {
+    used_[strip].first = std::min(used_[strip].first, first);
+    used_[strip].end = std::max(used_[strip].end, end);
+  }
+  void use(const RowSpans& spans) {
+    for (std::size_t strip = spans.first_word; strip < spans.end_word; ++strip)
+      use(strip, spans.first_row, spans.first_row + spans.count);
   }
 
-  /// Calls visit(place of a word) for a row's words that may have samples.
+  /// Calls visit(strip, mask) for the columns from `left` to `right` that are on the grid.
   template <typename Visit>
-  void visit_row(std::size_t row, Visit&& visit) const {
-    const std::size_t end = row * row_words_ + used_[row].end;
-    if (used_[row].empty()) return;
-    for (std::size_t i = row * row_words_ + used_[row].first; i < end; ++i) visit(i);
-  }
-
-  /// How many bits each byte of a word has.
-  [[nodiscard]] static constexpr Word bits_of_bytes(Word word) noexcept {
-    word -= word >> 1 & 0x5555555555555555U;
-    word = (word & 0x3333333333333333U) + (word >> 2 & 0x3333333333333333U);
-    return (word + (word >> 4)) & 0x0f0f0f0f0f0f0f0fU;
-  }
-  [[nodiscard]] static constexpr std::size_t sum_of_bytes(Word bytes) noexcept {
-    bytes = (bytes & 0x00ff00ff00ff00ffU) + (bytes >> 8 & 0x00ff00ff00ff00ffU);
-    return static_cast<std::size_t>(bytes * 0x0001000100010001U >> 48);
-  }
-
-  /// Calls visit(place of a word, mask) for the samples of a row from `left` to `right`; returns
-  /// their words.
-  template <typename Visit>
-  Words visit_words(std::size_t row, std::int64_t left, std::int64_t right, Visit&& visit) const {
+  void visit_strips(std::int64_t left, std::int64_t right, Visit&& visit) const {
     left = std::max<std::int64_t>(left, 0);
     right = std::min(right, static_cast<std::int64_t>(grid_->columns()) - 1);
-    if (left > right) return {};
+    if (left > right) return;
     const auto first = static_cast<std::size_t>(left);
     const auto last = static_cast<std::size_t>(right);
-    const Word from_first = ~Word{0} << (first % kWordBits);
-    const Word to_last = ~Word{0} >> (kWordBits - 1 - last % kWordBits);
-    const std::size_t begin = row * row_words_ + first / kWordBits;
-    const std::size_t end = row * row_words_ + last / kWordBits;
-    const Words words{static_cast<std::uint32_t>(first / kWordBits),
-                      static_cast<std::uint32_t>(last / kWordBits + 1)};
-    if (begin == end) {
-      visit(begin, from_first & to_last);
-      return words;
+    for (std::size_t strip = first / kWordBits; strip <= last / kWordBits; ++strip) {
+      Word mask = ~Word{0};
+      if (strip == first / kWordBits) mask &= ~Word{0} << (first % kWordBits);
+      if (strip == last / kWordBits) mask &= ~Word{0} >> (kWordBits - 1 - last % kWordBits);
+      visit(strip, mask);
     }
-    visit(begin, from_first);
-    for (std::size_t i = begin + 1; i < end; ++i) visit(i, ~Word{0});
-    visit(end, to_last);
-    return words;
   }
 
   const SampleGrid* grid_;
-  std::size_t row_words_;
-  std::vector<Word> words_;  // at least those of the rows; all but the used ones are 0
-  std::vector<Words> used_;  // of each row
+  std::vector<Rows> used_;   // of each strip
+  std::vector<Word> words_;  // at least those of the strips and their room
 };
 
 }  // namespace routebench::judging

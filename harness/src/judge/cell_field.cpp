@@ -2,33 +2,29 @@
 
 #include <algorithm>
 
+#include "judge/row_loops.hpp"
+
 namespace routebench::judging {
-namespace {
-
-/// Adds weight x from[0 .. count) to to[0 .. count), which compilers turn into vector instructions.
-void add_scaled(const float* from, float* to, std::size_t count, float weight) {
-  for (std::size_t i = 0; i < count; ++i) to[i] += weight * from[i];
-}
-
-}  // namespace
-
-Columns CellField::occupied(std::size_t row) const {
-  const std::span<const float> values = this->row(row);
-  const auto is_set = [](float value) { return value != 0; };
-  const auto first = std::find_if(values.begin(), values.end(), is_set);
-  const auto last = std::find_if(values.rbegin(), values.rend(), is_set);
-  if (first == values.end()) return {};
-  return {static_cast<std::size_t>(first - values.begin()),
-          static_cast<std::size_t>(values.rend() - last)};
-}
-
 NeighbourhoodMeans::NeighbourhoodMeans(const CellField& field, std::size_t reach,
                                        std::span<const Columns> wanted)
     : field_(field),
       reach_(reach),
       wanted_(wanted),
-      along_((2 * reach - 1) * field.columns()),
-      means_(field.columns()) {}
+      row_size_(field.columns() + RowLoops::kFloatRoom),
+      padded_(row_size_ + 2 * reach),
+      along_((2 * reach - 1) * row_size_),
+      means_(row_size_),
+      from_(2 * reach - 1) {
+  const auto weight = [reach](std::size_t distance) {
+    return static_cast<float>(reach - distance) / static_cast<float>(reach * reach);
+  };
+  along_weights_.push_back(weight(0));
+  for (std::size_t distance = 1; distance < reach; ++distance)
+    along_weights_.insert(along_weights_.end(), 2, weight(distance));
+  for (std::size_t distance = reach; distance-- > 1;) across_weights_.push_back(weight(distance));
+  for (std::size_t distance = 0; distance < reach; ++distance)
+    across_weights_.push_back(weight(distance));
+}
 
 std::size_t NeighbourhoodMeans::first_near(std::size_t row) const {
   return row + 1 - std::min(reach_, row + 1);
@@ -39,7 +35,7 @@ std::size_t NeighbourhoodMeans::last_near(std::size_t row) const {
 }
 
 float* NeighbourhoodMeans::along(std::size_t row) {
-  return along_.data() + row % (2 * reach_ - 1) * field_.columns();
+  return along_.data() + row % (2 * reach_ - 1) * row_size_;
 }
 
 void NeighbourhoodMeans::average_along(std::size_t row) {
@@ -48,18 +44,19 @@ void NeighbourhoodMeans::average_along(std::size_t row) {
     if (!wanted_[other].empty())
       near = {std::min(near.first, wanted_[other].first), std::max(near.end, wanted_[other].end)};
   if (near.empty()) return;
-  const float* from = field_.row(row).data();
-  float* to = along(row);
-  std::fill(to + near.first, to + near.end, 0.0F);
-  // One distance after the other over the whole row.
-  add_scaled(from + near.first, to + near.first, near.end - near.first, weight(0));
-  for (std::size_t d = 1; d < std::min(reach_, field_.columns()); ++d) {
-    const std::size_t end = std::min(near.end, field_.columns() - d);
-    if (near.first < end)
-      add_scaled(from + near.first + d, to + near.first, end - near.first, weight(d));
-    const std::size_t first = std::max(near.first, d);
-    if (first < near.end) add_scaled(from + first - d, to + first, near.end - first, weight(d));
+  // With as many zeros before and after the row as a mean takes.
+  const Columns taken{near.first - std::min(near.first, reach_),
+                      std::min(near.end + reach_, field_.columns())};
+  float* const from = padded_.data() + reach_;
+  const float* const values = field_.row(row).data();
+  std::copy(values + taken.first, values + taken.end, from + taken.first);
+  from_[0] = from + near.first;
+  for (std::size_t distance = 1; distance < reach_; ++distance) {
+    from_[2 * distance - 1] = from + near.first + distance;
+    from_[2 * distance] = from + near.first - distance;
   }
+  row_loops().weighted_sum(from_.data(), along_weights_.data(), from_.size(),
+                           along(row) + near.first, near.end - near.first);
 }
 
 std::span<const float> NeighbourhoodMeans::row(std::size_t row) {
@@ -67,11 +64,12 @@ std::span<const float> NeighbourhoodMeans::row(std::size_t row) {
   if (wanted.empty()) return {};
   for (next_ = std::max(next_, first_near(row)); next_ <= last_near(row); ++next_)
     average_along(next_);
+  const std::size_t first = first_near(row);
+  const std::size_t near_count = last_near(row) + 1 - first;
+  for (std::size_t i = 0; i < near_count; ++i) from_[i] = along(first + i) + wanted.first;
   const std::size_t count = wanted.end - wanted.first;
-  std::fill(means_.begin(), means_.begin() + static_cast<std::ptrdiff_t>(count), 0.0F);
-  for (std::size_t other = first_near(row); other <= last_near(row); ++other)
-    add_scaled(along(other) + wanted.first, means_.data(), count,
-               weight(other < row ? row - other : other - row));
+  row_loops().weighted_sum(from_.data(), across_weights_.data() + (first + reach_ - 1 - row),
+                           near_count, means_.data(), count);
   return {means_.data(), count};
 }
 

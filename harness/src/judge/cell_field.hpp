@@ -28,8 +28,6 @@ class CellField {
   [[nodiscard]] std::span<const float> row(std::size_t row) const {
     return {values_.data() + row * columns_, columns_};
   }
-  /// From the first to the last cell of a row that is not 0.
-  [[nodiscard]] Columns occupied(std::size_t row) const;
 
  private:
   std::size_t columns_;
@@ -50,9 +48,6 @@ class NeighbourhoodMeans {
   [[nodiscard]] std::span<const float> row(std::size_t row);
 
  private:
-  [[nodiscard]] float weight(std::size_t distance) const {
-    return static_cast<float>(reach_ - distance) / static_cast<float>(reach_ * reach_);
-  }
   /// The rows that reach as far as this one.
   [[nodiscard]] std::size_t first_near(std::size_t row) const;
   [[nodiscard]] std::size_t last_near(std::size_t row) const;
@@ -63,9 +58,14 @@ class NeighbourhoodMeans {
   const CellField& field_;
   std::size_t reach_;
   std::span<const Columns> wanted_;
-  std::size_t next_ = 0;      // row whose means along it are not known yet
-  std::vector<float> along_;  // of as many rows as a mean takes, in turn
+  std::size_t row_size_;       // of memory
+  std::size_t next_ = 0;       // row whose means along it are not known yet
+  std::vector<float> padded_;  // a row of the field between zeros
+  std::vector<float> along_;   // of as many rows as a mean takes, in turn
   std::vector<float> means_;
+  std::vector<const float*> from_;
+  std::vector<float> along_weights_;   // from the middle outwards, before and after in turn
+  std::vector<float> across_weights_;  // from the first row that reaches to the last
 };
 
 }  // namespace routebench::judging

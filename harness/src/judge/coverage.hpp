@@ -32,8 +32,8 @@ struct Coverage {
 };
 
 /// Measures one layer. Takes a layer of `outline_samples` > 0 samples and the strays of its runs.
-/// Cost   one word operation for 64 samples, a few additions for a row between a bead's straight
-///        sides, a square root or two for a row at its ends.
+/// Cost   one word operation for 64 samples, some additions for a row between a bead's straight
+///        sides, two square roots for a row at its ends; of two to eight rows at once.
 [[nodiscard]] Coverage measure_coverage(const LayerSamples& samples, std::size_t outline_samples,
                                         const Demand& demand, const std::vector<Run>& runs,
                                         const std::vector<Bead>& strays, const Task& task);

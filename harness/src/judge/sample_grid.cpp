@@ -26,14 +26,14 @@ SampleGrid::SampleGrid(const Polygons& polygons, double margin_mm, double pitch_
   pitch_mm_ = std::max(
       {pitch_mm, std::sqrt(size.x * size.y / max_samples), std::max(size.x, size.y) / max_samples});
   steps_a_mm_ = 1 / pitch_mm_;
-  columns_ = static_cast<std::size_t>(size.x / pitch_mm_) + 1;
-  rows_ = static_cast<std::size_t>(size.y / pitch_mm_) + 1;
+  size_.columns = static_cast<std::size_t>(size.x / pitch_mm_) + 1;
+  size_.rows = static_cast<std::size_t>(size.y / pitch_mm_) + 1;
 }
 
 SampleGrid::Shares SampleGrid::shares_over(Point2 from, Point2 to) const noexcept {
   const auto is_over = [this](Point2 p) {
-    return p.x >= -0.5 && p.y >= -0.5 && p.x <= static_cast<double>(columns_) - 0.5 &&
-           p.y <= static_cast<double>(rows_) - 0.5;
+    return p.x >= -0.5 && p.y >= -0.5 && p.x <= static_cast<double>(size_.columns) - 0.5 &&
+           p.y <= static_cast<double>(size_.rows) - 0.5;
   };
   Shares shares{0, 1};
   if (is_over(from) && is_over(to)) return shares;
@@ -50,8 +50,8 @@ SampleGrid::Shares SampleGrid::shares_over(Point2 from, Point2 to) const noexcep
     shares.enter = std::max(shares.enter, first);
     shares.leave = std::min(shares.leave, last);
   };
-  clip(from.x, run.x, columns_);
-  clip(from.y, run.y, rows_);
+  clip(from.x, run.x, size_.columns);
+  clip(from.y, run.y, size_.rows);
   return shares.enter < shares.leave ? shares : Shares{};
 }
 

@@ -8,6 +8,12 @@
 
 namespace routebench::judging {
 
+/// How many rows and columns of samples there are.
+struct GridSize {
+  std::size_t rows = 0;
+  std::size_t columns = 0;
+};
+
 /// Sample points over the bounding box of polygons. Parts and the lines that fill them mostly run
 /// along the axes or at 45 degrees; a grid along the axes would meet them in step and be wrong by
 /// several percent of the area. This one is turned by 0.3 rad, which leaves its error two orders of
@@ -29,8 +35,9 @@ class SampleGrid {
 
   [[nodiscard]] double pitch_mm() const noexcept { return pitch_mm_; }
   [[nodiscard]] double sample_mm2() const noexcept { return pitch_mm_ * pitch_mm_; }
-  [[nodiscard]] std::size_t columns() const noexcept { return columns_; }
-  [[nodiscard]] std::size_t rows() const noexcept { return rows_; }
+  [[nodiscard]] std::size_t columns() const noexcept { return size_.columns; }
+  [[nodiscard]] std::size_t rows() const noexcept { return size_.rows; }
+  [[nodiscard]] GridSize size() const noexcept { return size_; }
 
   /// Between which shares of its length a segment, in steps, runs over the samples.
   struct Shares {
@@ -47,8 +54,7 @@ class SampleGrid {
   Point2 lower_;  // in the turned frame, mm
   double pitch_mm_;
   double steps_a_mm_ = 1;
-  std::size_t columns_ = 0;
-  std::size_t rows_ = 0;
+  GridSize size_;
 };
 
 }  // namespace routebench::judging

@@ -17,8 +17,8 @@ void SamplesLeft::remove(Point2 a, Point2 b, double radius_mm) {
   const Point2 to = grid.to_steps(b);
   const double radius = grid.to_steps(radius_mm);
   if (!any_near(from, to, radius)) return;
-  visit_capsule_rows(from, to, radius, grid.rows(), [this](std::size_t row, Span near) {
-    left_.remove(row, near.left, near.right);
+  Capsule(Segment(from, to), radius).visit(grid.size(), [this](const RowSpans& rows) {
+    left_.remove(rows);
   });
 }
 

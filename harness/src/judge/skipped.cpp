@@ -1,6 +1,8 @@
 #include "judge/skipped.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -110,7 +112,8 @@ class PartLedger {
         cell_steps_(std::size_t{1} << cell_shift_),
         box_(grid_, part, cell_steps_),
         demanded_(cells(box_.end_column - box_.first_column), cells(box_.end_row - box_.first_row)),
-        laid_(demanded_) {
+        laid_(demanded_),
+        wanted_(demanded_.rows(), Columns{demanded_.columns(), 0}) {
     count_samples();
   }
 
@@ -145,14 +148,12 @@ class PartLedger {
     const auto cell_mm = grid_.pitch_mm() * static_cast<double>(cell_steps_);
     const auto reach = static_cast<std::size_t>(
         std::max(1.0, std::round(kReachDistances * line_distance_mm_ / cell_mm)));
-    std::vector<Columns> wanted(demanded_.rows());
-    for (std::size_t row = 0; row < wanted.size(); ++row) wanted[row] = demanded_.occupied(row);
-    NeighbourhoodMeans demanded(demanded_, reach, wanted);
-    NeighbourhoodMeans laid(laid_, reach, wanted);
+    NeighbourhoodMeans demanded(demanded_, reach, wanted_);
+    NeighbourhoodMeans laid(laid_, reach, wanted_);
     double skipped = 0;
-    for (std::size_t row = 0; row < wanted.size(); ++row) {
-      if (wanted[row].empty()) continue;
-      const std::span<const float> own = demanded_.row(row).subspan(wanted[row].first);
+    for (std::size_t row = 0; row < wanted_.size(); ++row) {
+      if (wanted_[row].empty()) continue;
+      const std::span<const float> own = demanded_.row(row).subspan(wanted_[row].first);
       const std::span<const float> demanded_near = demanded.row(row);
       const std::span<const float> laid_near = laid.row(row);
       for (std::size_t i = 0; i < laid_near.size(); ++i)
@@ -183,11 +184,22 @@ class PartLedger {
     const std::size_t stride = std::max<std::size_t>(1, cell_steps_ / 2);
     const BitPlane::Word mask = ~BitPlane::Word{0} >> (BitPlane::kWordBits - cell_steps_);
     const std::size_t cells_a_word = BitPlane::kWordBits / cell_steps_;
-    for (std::size_t row = box_.first_row + stride / 2; row < box_.end_row; row += stride) {
-      const BitPlane::Words used = part_.used(row);
-      for (std::size_t i = used.first; i < used.end; ++i) {
-        BitPlane::Word word = bits_of_cells(part_.row(row)[i]);
-        for (std::size_t cell = i * cells_a_word; word != 0; ++cell) {
+    for (std::size_t strip = 0; strip < part_.strips(); ++strip) {
+      const BitPlane::Rows used = part_.used(strip);
+      const std::size_t begin = strip * BitPlane::kWordBits - box_.first_column;
+      std::size_t row = box_.first_row + stride / 2;
+      if (used.first > row) row += (used.first - row + stride - 1) / stride * stride;
+      for (; row < std::min(used.end, box_.end_row); row += stride) {
+        const BitPlane::Word samples = part_.word(strip, row);
+        if (samples == 0) continue;
+        const auto before = static_cast<std::size_t>(std::countr_zero(samples));
+        const auto after = static_cast<std::size_t>(std::countl_zero(samples));
+        Columns& wanted = wanted_[(row - box_.first_row) >> cell_shift_];
+        wanted.first = std::min(wanted.first, (begin + before) >> cell_shift_);
+        wanted.end =
+            std::max(wanted.end, ((begin + BitPlane::kWordBits - 1 - after) >> cell_shift_) + 1);
+        BitPlane::Word word = bits_of_cells(samples);
+        for (std::size_t cell = strip * cells_a_word; word != 0; ++cell) {
           if (const BitPlane::Word set = word & mask; set > 0)
             cell_at(demanded_, cell * cell_steps_, row) +=
                 static_cast<float>(static_cast<std::size_t>(set) * stride);
@@ -199,11 +211,12 @@ class PartLedger {
 
   /// How many bits each cell's part of a word has, in its place.
   [[nodiscard]] BitPlane::Word bits_of_cells(BitPlane::Word word) const {
-    for (std::size_t bits = 1; bits < cell_steps_; bits *= 2) {
-      // Every other field of that many bits.
-      const BitPlane::Word mask = ~BitPlane::Word{0} / ((BitPlane::Word{1} << bits) + 1);
-      word = (word & mask) + (word >> bits & mask);
-    }
+    // Of fields of 1, 2, 4 and so on bits every other one.
+    static constexpr std::array<BitPlane::Word, 6> kEveryOther{
+        0x5555555555555555U, 0x3333333333333333U, 0x0f0f0f0f0f0f0f0fU,
+        0x00ff00ff00ff00ffU, 0x0000ffff0000ffffU, 0x00000000ffffffffU};
+    for (unsigned i = 0; i < cell_shift_; ++i)
+      word = (word & kEveryOther[i]) + (word >> (1U << i) & kEveryOther[i]);
     return word;
   }
 
@@ -231,6 +244,7 @@ class PartLedger {
   SampleBox box_;
   CellField demanded_;  // in samples
   CellField laid_;
+  std::vector<Columns> wanted_;  // of each row, from the first to the last that demands anything
 };
 
 double skipped_of_part_mm2(const BitPlane& samples, const Polygons& part, double line_distance_mm,
