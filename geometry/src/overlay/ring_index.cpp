@@ -35,7 +35,10 @@ std::pmr::vector<std::uint32_t> next_points(const GridRings& rings) {
 }  // namespace
 
 RingIndex::RingIndex(GridRings rings)
-    : rings_(std::move(rings)), next_(next_points(rings_)), boxes_(rings_.size(), rings_.memory()) {
+    : rings_(std::move(rings)),
+      box_(box_of(rings_.points())),
+      next_(next_points(rings_)),
+      boxes_(rings_.size(), rings_.memory()) {
   for (std::uint32_t e = 0; e < rings_.size(); ++e) boxes_.set(e, box_of(edge(e)));
   if (rings_.size() <= kFewEdges) return;
   cells_.emplace(
@@ -44,7 +47,7 @@ RingIndex::RingIndex(GridRings rings)
 }
 
 bool RingIndex::holds(GridPoint p) const {
-  if (cells_ && !cells_->cover(p)) return false;
+  if (!box_.meets({p, p})) return false;
   LeftRay ray(
       p, [this](std::uint32_t e) { return edge(e); }, [](std::uint32_t) { return true; });
   if (cells_)

@@ -38,6 +38,7 @@ class RingIndex {
   [[nodiscard]] bool meets_any_of(const RingIndex& other) const;
 
   GridRings rings_;
+  GridBox box_;  // around all
   std::pmr::vector<std::uint32_t> next_;
   EdgeBoxes boxes_;
   std::optional<EdgeCells> cells_;  // of many edges
