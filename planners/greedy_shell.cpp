@@ -110,6 +110,11 @@ class Pool {
     return {points_.data() + ring_begin(ring), points_.data() + ring_end(ring)};
   }
 
+  /// The same of the ring that a segment belongs to.
+  [[nodiscard]] std::span<const Point2> ring_with(std::uint32_t segment) const {
+    return ring(ring_of_[segment]);
+  }
+
   /// The segment with which a ring begins, for a nozzle at `from`.
   [[nodiscard]] std::uint32_t begin_of(std::size_t of, const SeamRule& seam, Point2 from) const {
     return ring_begin(of) + static_cast<std::uint32_t>(seam.begin_of(ring(of), from));
@@ -236,8 +241,11 @@ void walk(const Pool& pool, Search search, const PlanContext& context, Point2& n
   std::optional<std::uint32_t> follower;
   while (const auto segment = search.next(nozzle, follower)) {
     stop_if_asked(context);
-    if (segment != follower)
-      route.strokes.push_back({{pool.start(*segment)}, pool.width_mm(*segment)});
+    if (segment != follower) {
+      route.strokes.push_back({{}, pool.width_mm(*segment)});
+      route.strokes.back().points.reserve(pool.ring_with(*segment).size() + 1);
+      route.strokes.back().points.push_back(pool.start(*segment));
+    }
     laid[*segment] = true;
     search.remove(*segment);
     const std::uint32_t next = pool.next(*segment);

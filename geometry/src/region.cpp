@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <memory_resource>
 #include <optional>
@@ -102,11 +103,29 @@ Polygons clip(cl::ClipType operation, const Polygons& a, const Polygons& b) {
 namespace overlay {
 namespace {
 
+/// Ordered as point_less orders points.
+std::int64_t order_of(GridPoint p) { return std::int64_t{p.x} * (std::int64_t{1} << 32) + p.y; }
+
 Ring from_grid_ring(const GridRing& points) {
+  std::size_t first = 0;
+  std::int64_t least = order_of(points[0]);
+  bool is_alone = true;
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    const std::int64_t order = order_of(points[i]);
+    if (order > least) continue;
+    is_alone = order < least;
+    least = order;
+    first = i;
+  }
   Ring ring;
   ring.reserve(points.size());
-  for (const GridPoint p : points) ring.push_back({from_grid(p.x), from_grid(p.y)});
-  begin_at_smallest(ring);
+  const auto add = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      ring.push_back({from_grid(points[i].x), from_grid(points[i].y)});
+  };
+  add(first, points.size());
+  add(0, first);
+  if (!is_alone) begin_at_smallest(ring);
   return ring;
 }
 

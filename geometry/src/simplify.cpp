@@ -1,14 +1,18 @@
 #include "routebench/geometry/simplify.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <memory_resource>
 #include <utility>
 
 #include "routebench/geometry/vec.hpp"
 
 namespace routebench {
 namespace {
+
+constexpr std::size_t kUsualBytes = 4096;
 
 /// Marks what is needed of the stretch between two points.
 void mark_needed(const std::vector<Point2>& points, std::size_t first, std::size_t last,
@@ -145,7 +149,10 @@ Ring straightened_ring(const Ring& ring, double tolerance_mm) {
   if (ring.size() < 3) return ring;
   const std::size_t n = ring.size(), first = farthest_corner(ring);
   const auto at = [&](std::size_t i) { return ring[first + i < n ? first + i : first + i - n]; };
-  Ring kept{at(0)};
+  // Of many rings most points go: these would grow step by step.
+  std::array<std::byte, kUsualBytes> usual;
+  std::pmr::monotonic_buffer_resource memory(usual.data(), usual.size());
+  std::pmr::vector<Point2> kept({at(0)}, &memory);
   Cone cone(at(0), tolerance_mm);
   for (std::size_t i = 1; i <= n; ++i) {
     const Point2 p = at(i == n ? 0 : i);
@@ -155,7 +162,7 @@ Ring straightened_ring(const Ring& ring, double tolerance_mm) {
     }
     cone.narrow(p);
   }
-  return kept;
+  return {kept.begin(), kept.end()};
 }
 
 }  // namespace routebench
