@@ -30,15 +30,26 @@ CrossedRings::CrossedRings(const PlanarEdges& edges)
   are_known_ = !edges.any_touches() && put_in_order() && find_windings();
 }
 
+/// Into the order along the edges: by edges at once, then the few of one edge.
+void CrossedRings::sort_by_edges() {
+  std::pmr::vector<std::uint32_t> end(edges_.size() + 1, 0, edges_.memory());  // of an edge's
+  for (const Cut& cut : cuts_) ++end[cut.edge + 1];
+  for (std::size_t edge = 1; edge < end.size(); ++edge) end[edge] += end[edge - 1];
+  order_.resize(cuts_.size());
+  for (std::uint32_t i = 0; i < cuts_.size(); ++i) order_[end[cuts_[i].edge]++] = i;
+  const auto is_before = [&](std::uint32_t a, std::uint32_t b) {
+    return cuts_[a].squared_way < cuts_[b].squared_way;
+  };
+  std::uint32_t begin = 0;
+  for (std::uint32_t edge = 0; edge < edges_.size(); begin = end[edge++])
+    if (end[edge] - begin > 1)
+      std::sort(order_.begin() + begin, order_.begin() + end[edge], is_before);
+}
+
 /// False if some crossings may come in another order than their places.
 bool CrossedRings::put_in_order() {
   const auto count = static_cast<std::uint32_t>(cuts_.size());
-  order_.resize(count);
-  for (std::uint32_t i = 0; i < count; ++i) order_[i] = i;
-  std::sort(order_.begin(), order_.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return std::tie(cuts_[a].edge, cuts_[a].squared_way) <
-           std::tie(cuts_[b].edge, cuts_[b].squared_way);
-  });
+  sort_by_edges();
   for (std::uint32_t i = 1; i < count; ++i) {
     const Cut &a = cuts_[order_[i - 1]], &b = cuts_[order_[i]];
     if (a.edge == b.edge && std::abs(a.at.x - b.at.x) < kApart &&

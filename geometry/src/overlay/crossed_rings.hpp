@@ -52,8 +52,8 @@ class CrossedRings {
   };
   class Tracer;
 
+  void sort_by_edges();
   bool put_in_order();
-  void pair_up();
   bool find_windings();
   [[nodiscard]] Winding winding_around(std::uint32_t ring);
   [[nodiscard]] std::uint32_t strand_at(const Ring& ring) const;
