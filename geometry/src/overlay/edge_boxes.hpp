@@ -61,21 +61,23 @@ class EdgeBoxes {
       visit_bits(first_of(groups_[first / 8].meeting(box), eights - first), first, look_at);
   }
 
-  /// Calls visit(edge, other) for each two whose boxes meet, the other before the edge.
-  /// Cost  of few edges, that of visit_meeting() for each; else about a third.
+  /// Calls visit(edge, other) for each two whose boxes meet, the other before the edge, but not
+  /// just before it: edges of one ring that follow each other always meet. Cost  of few edges, that
+  /// of visit_meeting() for each; else about a third.
   template <typename Visit>
   void visit_meeting_pairs(std::uint32_t edges, Visit&& visit) const {
     if (groups_.empty()) {
-      for (std::uint32_t edge = 0; edge < edges; ++edge)
-        visit_meeting((*this)[edge], edge, [&](std::uint32_t other) { visit(edge, other); });
+      for (std::uint32_t edge = 2; edge < edges; ++edge)
+        visit_meeting((*this)[edge], edge - 1, [&](std::uint32_t other) { visit(edge, other); });
       return;
     }
     // Only edges that meet the box around eight others look at those.
     const auto look_at = [&](std::uint32_t eight, std::uint32_t other) {
       visit_bits(first_of(eights_[eight].meeting(box_of_eight(other)), edges - 8 * eight),
                  8 * eight, [&](std::uint32_t edge) {
-                   visit_bits(first_of(eights_[other].meeting((*this)[edge]), edge - 8 * other),
-                              8 * other, [&](std::uint32_t before) { visit(edge, before); });
+                   const std::uint32_t before_it = std::max(edge, 8 * other + 1) - 8 * other - 1;
+                   visit_bits(first_of(eights_[other].meeting((*this)[edge]), before_it), 8 * other,
+                              [&](std::uint32_t before) { visit(edge, before); });
                  });
     };
     for (std::uint32_t eight = 0; 8 * eight < edges; ++eight) {

@@ -46,11 +46,16 @@ PlanarEdges::PlanarEdges(const GridRings& rings) : PlanarEdges(rings, Unmet()) {
   const auto look_at = [this](std::uint32_t e, std::uint32_t f) {
     if (!are_neighbours(e, f)) look(e, f);
   };
-  if (cells_)
+  if (cells_) {
     for (std::uint32_t e = 0; e < size(); ++e)
       visit_near(e, e, [&](std::uint32_t f) { look_at(e, f); });
-  else
-    boxes_.visit_meeting_pairs(size(), look_at);
+    return;
+  }
+  boxes_.visit_meeting_pairs(size(), look_at);
+  for (std::uint32_t ring = 1; ring < this->rings(); ++ring) {
+    const std::uint32_t e = rings_.begin(ring);  // the edge before belongs to another ring
+    if (boxes_[e].meets(boxes_[e - 1])) look(e, e - 1);
+  }
 }
 
 PlanarEdges::PlanarEdges(const GridRings& rings, std::span<const std::uint8_t> moved)
