@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <memory_resource>
 #include <optional>
 #include <span>
 #include <string>
 #include <utility>
 
 #include "overlay/ring_index.hpp"
+#include "overlay/scratch.hpp"
 #include "overlay/to_grid.hpp"
 #include "routebench/geometry/error.hpp"
 #include "routebench/geometry/region.hpp"
@@ -76,8 +78,9 @@ struct SkinFinder::Impl {
   std::vector<std::size_t> first;  ///< see first_of_equal_layers
   std::vector<Index> indices;      ///< of those layers
 
-  static Index index_of(std::span<const Polygon> polygons) {
-    overlay::ToGrid grid;
+  static Index index_of(std::span<const Polygon> polygons,
+                        std::pmr::memory_resource* memory = std::pmr::get_default_resource()) {
+    overlay::ToGrid grid(0, memory);
     for (const Polygon& polygon : polygons)
       if (!grid.add(polygon, {1, 0})) return std::nullopt;
     overlay::GridRings rings = grid.take();
@@ -88,7 +91,8 @@ struct SkinFinder::Impl {
   /// Adds what of a polygon any of the layers leaves open; false if some do not fit on the grid.
   [[nodiscard]] bool add_skins(const Polygon& polygon, const std::vector<std::size_t>& around,
                                std::vector<overlay::GridPolygon>& skins) const {
-    const Index own = index_of({&polygon, 1});
+    overlay::Scratch scratch;
+    const Index own = index_of({&polygon, 1}, &scratch);
     if (!own) return false;
     // Most layers hold the polygon. The others are cut one after the other: at once, the sides of
     // all would be cut at each other too.
@@ -99,19 +103,21 @@ struct SkinFinder::Impl {
     }
     // Each takes a piece of what those before it leave.
     std::vector<std::vector<overlay::GridPolygon>> pieces;
-    Index common = own;
+    Index left;
+    const overlay::RingIndex* common = &*own;
     for (const std::size_t other : needed) {
-      if (!common) break;
+      if (common == nullptr) break;
       if (!pieces.empty() && indices[other] && indices[other]->holds_all_of(*common)) continue;
-      auto parts = divided(*common, indices[other]);
+      auto parts = divided(*common, pointer_to(indices[other]), &scratch);
       if (!parts) return false;
       if (parts->beyond.empty()) continue;
       pieces.push_back(std::move(parts->beyond));
-      common.reset();
-      if (!parts->within.empty()) common.emplace(overlay::rings_of(parts->within));
+      left.reset();
+      if (!parts->within.empty()) left.emplace(overlay::rings_of(parts->within, &scratch));
+      common = pointer_to(left);
     }
-    if (!are_apart(pieces)) {
-      auto parts = divided(*own, common);
+    if (!are_apart(pieces, &scratch)) {
+      auto parts = divided(*own, common, &scratch);
       if (!parts) return false;
       pieces = {std::move(parts->beyond)};
     }
@@ -119,21 +125,26 @@ struct SkinFinder::Impl {
     return true;
   }
 
+  static const overlay::RingIndex* pointer_to(const Index& index) {
+    return index ? &*index : nullptr;
+  }
+
   /// What of an area lies in another one and what does not; nothing if they cannot be cut.
   [[nodiscard]] static std::optional<overlay::Divided> divided(const overlay::RingIndex& area,
-                                                               const Index& other) {
-    overlay::GridRings rings = area.rings();
-    if (other) rings.add_near(other->rings(), area.rings(), {0, 1});
+                                                               const overlay::RingIndex* other,
+                                                               std::pmr::memory_resource* memory) {
+    overlay::GridRings rings(area.rings(), memory);
+    if (other != nullptr) rings.add_near(other->rings(), area.rings(), {0, 1});
     return overlay::divide(rings);
   }
 
   /// Whether no two pieces share a side, so that they need not be joined. Cuts are moved by less
   /// than a unit each.
-  [[nodiscard]] static bool are_apart(
-      const std::vector<std::vector<overlay::GridPolygon>>& pieces) {
+  [[nodiscard]] static bool are_apart(const std::vector<std::vector<overlay::GridPolygon>>& pieces,
+                                      std::pmr::memory_resource* memory) {
     if (pieces.size() < 2) return true;
     std::vector<overlay::RingIndex> indices;
-    for (const auto& piece : pieces) indices.emplace_back(overlay::rings_of(piece));
+    for (const auto& piece : pieces) indices.emplace_back(overlay::rings_of(piece, memory));
     for (std::size_t i = 0; i < indices.size(); ++i)
       for (std::size_t k = 0; k < i; ++k)
         if (indices[i].comes_near(indices[k])) return false;
