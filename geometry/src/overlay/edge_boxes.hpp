@@ -52,13 +52,13 @@ class EdgeBoxes {
   /// Cost  two instructions a box.
   template <typename Visit>
   void visit_meeting(const GridBox& box, std::uint32_t edges, Visit&& visit) const {
-    if (groups_.empty()) return visit_bits(meeting(box, edges), 0, visit);
+    if (groups_.empty()) return visit_bits(meeting(eights_, 0, edges, box), 0, visit);
     const std::uint32_t eights = (edges + 7) / 8;
     const auto look_at = [&](std::uint32_t eight) {
       visit_bits(first_of(eights_[eight].meeting(box), edges - 8 * eight), 8 * eight, visit);
     };
-    for (std::uint32_t first = 0; first < eights; first += 8)
-      visit_bits(first_of(groups_[first / 8].meeting(box), eights - first), first, look_at);
+    for (std::uint32_t first = 0; first < eights; first += 64)
+      visit_bits(meeting(groups_, first, eights, box), first, look_at);
   }
 
   /// Calls visit(edge, other) for each two whose boxes meet, the other before the edge, but not
@@ -82,8 +82,8 @@ class EdgeBoxes {
     };
     for (std::uint32_t eight = 0; 8 * eight < edges; ++eight) {
       const GridBox box = box_of_eight(eight);
-      for (std::uint32_t first = 0; first <= eight; first += 8)
-        visit_bits(first_of(groups_[first / 8].meeting(box), eight + 1 - first), first,
+      for (std::uint32_t first = 0; first <= eight; first += 64)
+        visit_bits(meeting(groups_, first, eight + 1, box), first,
                    [&](std::uint32_t other) { look_at(eight, other); });
     }
   }
@@ -105,8 +105,8 @@ class EdgeBoxes {
       if (others.groups_.empty())
         for (std::uint32_t other = 0; other < others.eights_.size(); ++other) look(other);
       else
-        for (std::uint32_t group = 0; group < others.groups_.size(); ++group)
-          visit_bits(others.groups_[group].meeting(box), 8 * group, look);
+        for (std::uint32_t first = 0; first < others.eights_.size(); first += 64)
+          visit_bits(meeting(others.groups_, first, others.eights_.size(), box), first, look);
     }
     return found;
   }
@@ -127,16 +127,8 @@ class EdgeBoxes {
     for (; bits != 0; bits &= bits - 1)
       visit(begin + static_cast<std::uint32_t>(std::countr_zero(bits)));
   }
-  static std::uint64_t first_of(std::uint64_t bits, std::uint32_t count) {
+  static std::uint64_t first_of(std::uint64_t bits, std::size_t count) {
     return count < 64 ? bits & ((std::uint64_t{1} << count) - 1) : bits;
-  }
-
-  /// A bit for each of the first `edges` whose box meets another one. Takes few edges.
-  [[nodiscard]] std::uint64_t meeting(const GridBox& box, std::uint32_t edges) const {
-    std::uint64_t bits = 0;
-    for (std::uint32_t begin = 0; begin < edges; begin += 8)
-      bits |= std::uint64_t{eights_[begin / 8].meeting(box)} << begin;
-    return first_of(bits, edges);
   }
 
   struct alignas(16) Eight {
@@ -190,6 +182,18 @@ class EdgeBoxes {
 #endif
     }
   };
+
+  /// A bit for each of up to 64 boxes, from `first` to before `end`, that meets another one. Takes
+  /// a first one that begins an eight.
+  [[nodiscard]] static std::uint64_t meeting(const std::pmr::vector<Eight>& eights,
+                                             std::size_t first, std::size_t end,
+                                             const GridBox& box) {
+    const std::size_t count = std::min<std::size_t>(end - first, 64);
+    std::uint64_t bits = 0;
+    for (std::size_t i = 0; i < count; i += 8)
+      bits |= std::uint64_t{eights[(first + i) / 8].meeting(box)} << i;
+    return first_of(bits, count);
+  }
 
   [[nodiscard]] GridBox box_of_eight(std::uint32_t eight) const {
     return groups_.empty() ? eights_[eight].box() : groups_[eight / 8].box(eight % 8);
