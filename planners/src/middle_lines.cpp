@@ -275,9 +275,7 @@ Room::Edge::Edge(Point2 a, Point2 b) : from(a), way(b - a) {
 
 double Room::Edge::squared_distance(Point2 p) const {
   const Point2 at = p - from;
-  // Without a division and, as compilers see it, without a branch.
-  const double share = std::min(std::max(dot(at, way) * shares_a_mm2, 0.0), 1.0);
-  const Point2 off = at - share * way;
+  const Point2 off = at - std::clamp(dot(at, way) * shares_a_mm2, 0.0, 1.0) * way;
   return dot(off, off);
 }
 

@@ -62,8 +62,8 @@ class EdgeBoxes {
   }
 
   /// Calls visit(edge, other) for each two whose boxes meet, the other before the edge, but not
-  /// just before it: edges of one ring that follow each other always meet. Cost  of few edges, that
-  /// of visit_meeting() for each; else about a third.
+  /// just before it: edges of one ring that follow each other always meet.
+  /// Cost  of few edges, that of visit_meeting() for each; else about a third.
   template <typename Visit>
   void visit_meeting_pairs(std::uint32_t edges, Visit&& visit) const {
     if (groups_.empty()) {
