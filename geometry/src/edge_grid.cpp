@@ -15,12 +15,37 @@ namespace {
 // it.
 constexpr double kOnEdgeMm = 4 / kGridUnitsPerMm;
 
+// Both coordinates at once, in a vector of the compiler's own: std::min, std::max and std::clamp
+// become branches, which nobody can foresee here.
+using Pair = double __attribute__((vector_size(16)));
+
+Pair pair_of(Point2 p) { return Pair{p.x, p.y}; }
+Pair lesser(Pair a, Pair b) { return a < b ? a : b; }
+Pair greater(Pair a, Pair b) { return a > b ? a : b; }
+
+struct PairBox {
+  Pair lower;
+  Pair upper;
+
+  PairBox(Point2 a, Point2 b)
+      : lower(lesser(pair_of(a), pair_of(b))), upper(greater(pair_of(a), pair_of(b))) {}
+
+  [[nodiscard]] bool is_apart_from(const PairBox& other) const {
+    const auto apart = (upper < other.lower) | (lower > other.upper);
+    return (apart[0] | apart[1]) != 0;
+  }
+  void widen(double margin_mm) {
+    lower -= margin_mm;
+    upper += margin_mm;
+  }
+};
+
 }  // namespace
 
 EdgeGrid::EdgeGrid(const Polygons& polygons) {
   const auto add_ring = [&](const Ring& ring) {
     for (std::size_t i = 0; i < ring.size(); ++i) {
-      const Point2 a = ring[i], b = ring[(i + 1) % ring.size()];
+      const Point2 a = ring[i], b = ring[i + 1 == ring.size() ? 0 : i + 1];
       if (a != b) edges_.push_back({a, b});
     }
   };
@@ -41,24 +66,32 @@ EdgeGrid::EdgeGrid(const Polygons& polygons) {
   row_count_ = static_cast<std::int64_t>(size.y / cell_mm_) + 1;
 
   // Two passes: how many items a bucket gets, then the items.
+  std::vector<std::uint32_t> buckets_of;  // of all edges, one after the other
+  std::vector<std::size_t> end_of;        // of each edge's
+  end_of.reserve(edges_.size());
   const auto fill = [&](Buckets& buckets, std::int64_t bucket_count, auto&& for_buckets_of) {
     buckets.begin.assign(static_cast<std::size_t>(bucket_count) + 1, 0);
-    for (const Edge& edge : edges_)
-      for_buckets_of(edge,
-                     [&](std::int64_t i) { ++buckets.begin[static_cast<std::size_t>(i) + 1]; });
+    buckets_of.clear();
+    end_of.clear();
+    for (const Edge& edge : edges_) {
+      for_buckets_of(edge, [&](std::int64_t i) {
+        ++buckets.begin[static_cast<std::size_t>(i) + 1];
+        buckets_of.push_back(static_cast<std::uint32_t>(i));
+      });
+      end_of.push_back(buckets_of.size());
+    }
     for (std::size_t i = 1; i < buckets.begin.size(); ++i) buckets.begin[i] += buckets.begin[i - 1];
     buckets.items.resize(buckets.begin.back());
     std::vector<std::uint32_t> next(buckets.begin.begin(), buckets.begin.end() - 1);
+    std::size_t k = 0;
     for (std::uint32_t e = 0; e < edges_.size(); ++e)
-      for_buckets_of(edges_[e], [&](std::int64_t i) {
-        buckets.items[next[static_cast<std::size_t>(i)]++] = e;
-      });
+      for (; k < end_of[e]; ++k) buckets.items[next[buckets_of[k]]++] = e;
   };
   fill(cells_, column_count_ * row_count_,
        [&](const Edge& edge, auto&& visit) { visit_cells(edge.a, edge.b, kOnEdgeMm, visit); });
   fill(rows_, row_count_, [&](const Edge& edge, auto&& visit) {
-    const auto [low, high] = std::minmax(edge.a.y, edge.b.y);
-    for (std::int64_t r = row(low); r <= row(high); ++r) visit(r);
+    const std::int64_t last_row = row(std::max(edge.a.y, edge.b.y));
+    for (std::int64_t r = row(std::min(edge.a.y, edge.b.y)); r <= last_row; ++r) visit(r);
   });
 }
 
@@ -72,33 +105,51 @@ std::int64_t EdgeGrid::row(double y) const {
   return static_cast<std::int64_t>(std::clamp(cell, 0.0, static_cast<double>(row_count_ - 1)));
 }
 
+EdgeGrid::Cells EdgeGrid::cells_of(double lower_x, double lower_y, double upper_x,
+                                   double upper_y) const {
+  const Pair origin = pair_of(lower_);
+  const Pair last{static_cast<double>(column_count_ - 1), static_cast<double>(row_count_ - 1)};
+  const auto cell = [&](Pair p) { return lesser(greater((p - origin) / cell_mm_, Pair{}), last); };
+  const Pair first_cell = cell(Pair{lower_x, lower_y});
+  const Pair last_cell = cell(Pair{upper_x, upper_y});
+  return {.first_column = static_cast<std::int64_t>(first_cell[0]),
+          .last_column = static_cast<std::int64_t>(last_cell[0]),
+          .first_row = static_cast<std::int64_t>(first_cell[1]),
+          .last_row = static_cast<std::int64_t>(last_cell[1])};
+}
+
 template <typename Visit>
 void EdgeGrid::visit_cells(Point2 a, Point2 b, double margin_mm, Visit&& visit) const {
   if (a.y > b.y) std::swap(a, b);
-  const auto [left, right] = std::minmax(a.x, b.x);
+  const double left = std::min(a.x, b.x);
+  const double right = std::max(a.x, b.x);
   if (b.y + margin_mm < lower_.y || a.y - margin_mm > upper_.y || right + margin_mm < lower_.x ||
       left - margin_mm > upper_.x)
     return;
-  const std::int64_t last_row = row(b.y + margin_mm);
-  for (std::int64_t r = row(a.y - margin_mm); r <= last_row; ++r) {
+  // Rounding in the shares stays far below the margin; cells outside the box hold nothing.
+  const double slack = margin_mm + kOnEdgeMm;
+  const Cells cells = cells_of(left - slack, a.y - margin_mm, right + slack, b.y + margin_mm);
+  const auto visit_row = [&](std::int64_t r, std::int64_t first_column, std::int64_t last_column) {
+    for (std::int64_t c = first_column; c <= last_column; ++c) visit(r * column_count_ + c);
+  };
+  if (cells.first_row == cells.last_row || cells.first_column == cells.last_column) {
+    for (std::int64_t r = cells.first_row; r <= cells.last_row; ++r)
+      visit_row(r, cells.first_column, cells.last_column);
+    return;
+  }
+  for (std::int64_t r = cells.first_row; r <= cells.last_row; ++r) {
     // The part of the segment that lies in this row, widened by the margin.
-    double low_x = left, high_x = right;
-    if (b.y > a.y && left < right) {
-      const double bottom = lower_.y + static_cast<double>(r) * cell_mm_ - margin_mm;
-      const double top = bottom + cell_mm_ + 2 * margin_mm;
-      const double share_in = std::clamp((bottom - a.y) / (b.y - a.y), 0.0, 1.0);
-      const double share_out = std::clamp((top - a.y) / (b.y - a.y), 0.0, 1.0);
-      const auto [x0, x1] =
-          std::minmax({a.x + share_in * (b.x - a.x), a.x + share_out * (b.x - a.x)});
-      low_x = x0;
-      high_x = x1;
+    const double bottom = lower_.y + static_cast<double>(r) * cell_mm_ - margin_mm;
+    const double top = bottom + cell_mm_ + 2 * margin_mm;
+    double x0 = a.x, x1 = b.x;
+    if (b.y > a.y) {
+      x0 = a.x + std::clamp((bottom - a.y) / (b.y - a.y), 0.0, 1.0) * (b.x - a.x);
+      x1 = a.x + std::clamp((top - a.y) / (b.y - a.y), 0.0, 1.0) * (b.x - a.x);
     }
-    // Rounding in the shares stays far below the margin; cells outside the box hold nothing.
-    const double slack = margin_mm + kOnEdgeMm;
-    if (high_x + slack < lower_.x || low_x - slack > upper_.x) continue;
-    const std::int64_t last_column = column(high_x + slack);
-    for (std::int64_t c = column(low_x - slack); c <= last_column; ++c)
-      visit(r * column_count_ + c);
+    const double low_x = std::min(x0, x1) - slack;
+    const double high_x = std::max(x0, x1) + slack;
+    if (high_x < lower_.x || low_x > upper_.x) continue;
+    visit_row(r, column(low_x), column(high_x));
   }
 }
 
@@ -160,8 +211,8 @@ std::vector<double> EdgeGrid::crossings(Point2 a, Point2 b) const {
 
 bool EdgeGrid::meets(Point2 a, Point2 b) const {
   if (edges_.empty()) return false;
-  const Point2 lower{std::min(a.x, b.x) - kOnEdgeMm, std::min(a.y, b.y) - kOnEdgeMm};
-  const Point2 upper{std::max(a.x, b.x) + kOnEdgeMm, std::max(a.y, b.y) + kOnEdgeMm};
+  PairBox box(a, b);
+  box.widen(kOnEdgeMm);
   // Whether both points lie on one side of line pq, further from it than what is on it.
   const auto on_one_side = [](Point2 p, Point2 q, Point2 first, Point2 second) {
     const Point2 way = q - p;
@@ -172,24 +223,26 @@ bool EdgeGrid::meets(Point2 a, Point2 b) const {
   };
   const auto any_meets = [&](std::int64_t first_cell, std::int64_t last_cell) {
     // The items of cells that follow each other do so, too.
-    const auto begin = cells_.items.begin() + cells_.begin[static_cast<std::size_t>(first_cell)];
-    const auto end = cells_.items.begin() + cells_.begin[static_cast<std::size_t>(last_cell) + 1];
-    return std::any_of(begin, end, [&](std::uint32_t item) {
-      const Edge& edge = edges_[item];
-      return std::max(edge.a.x, edge.b.x) >= lower.x && std::min(edge.a.x, edge.b.x) <= upper.x &&
-             std::max(edge.a.y, edge.b.y) >= lower.y && std::min(edge.a.y, edge.b.y) <= upper.y &&
-             !on_one_side(a, b, edge.a, edge.b) && !on_one_side(edge.a, edge.b, a, b);
-    });
+    const std::uint32_t* const items = cells_.items.data();
+    const std::uint32_t end = cells_.begin[static_cast<std::size_t>(last_cell) + 1];
+    for (std::uint32_t i = cells_.begin[static_cast<std::size_t>(first_cell)]; i < end; ++i) {
+      const Edge& edge = edges_[items[i]];
+      if (!PairBox(edge.a, edge.b).is_apart_from(box) && !on_one_side(a, b, edge.a, edge.b) &&
+          !on_one_side(edge.a, edge.b, a, b))
+        return true;
+    }
+    return false;
   };
   // Most segments are short: all cells of their box are looked at sooner than those on the way are
   // found.
   constexpr std::int64_t kFewCells = 2;
-  const std::int64_t first_row = row(lower.y), last_row = row(upper.y);
-  const std::int64_t first_column = column(lower.x), last_column = column(upper.x);
+  const Cells cells = cells_of(box.lower[0], box.lower[1], box.upper[0], box.upper[1]);
   bool met = false;
-  if (last_row - first_row < kFewCells && last_column - first_column < kFewCells) {
-    for (std::int64_t r = first_row; r <= last_row && !met; ++r)
-      met = any_meets(r * column_count_ + first_column, r * column_count_ + last_column);
+  if (cells.last_row - cells.first_row < kFewCells &&
+      cells.last_column - cells.first_column < kFewCells) {
+    for (std::int64_t r = cells.first_row; r <= cells.last_row && !met; ++r)
+      met =
+          any_meets(r * column_count_ + cells.first_column, r * column_count_ + cells.last_column);
   } else {
     visit_cells(a, b, kOnEdgeMm, [&](std::int64_t cell) { met = met || any_meets(cell, cell); });
   }

@@ -90,12 +90,22 @@ TEST(JudgeSamples, CapsulesTakeAwayWhatTheyWouldAdd) {
   for (const int count : {1, 300, kEnoughForAll}) {
     judging::BitPlane added(grid);
     judging::SamplesLeft left(judging::BitPlane(all, [](Word p) { return p; }));
+    judging::SamplesLeft by_paths(judging::BitPlane(all, [](Word p) { return p; }));
+    std::vector<Point2> path;
     for (int i = 0; i < count; ++i) {
-      const Point2 a{x(random), y(random)};
+      const Point2 a = path.empty() ? Point2{x(random), y(random)} : path.back();
       const Point2 b = lerp(a, {x(random), y(random)}, 0.05);
       draw(added, a, b, 0.4);
+      EXPECT_EQ(left.empty(), left.count() == 0);
       left.remove(a, b, 0.4);
+      if (path.empty()) path.push_back(a);
+      path.push_back(b);
+      if (path.size() < 8 && i + 1 < count) continue;
+      by_paths.remove(path, 0.4);
+      path.clear();
     }
+    EXPECT_EQ(by_paths.count(), left.count());
+    EXPECT_EQ(left.empty(), left.count() == 0);
     EXPECT_EQ(left.count(), all.count() - all.count_in(added)) << count;
     EXPECT_EQ(left.count() == 0, count == kEnoughForAll);
   }

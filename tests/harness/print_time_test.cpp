@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <numbers>
@@ -96,6 +97,33 @@ TEST(PrintTime, ACurveOfShortMovesIsRunThroughAsItsArc) {
 double leg_s(double length_mm, double from, double to) {
   const double ramps_mm = (2 * 100.0 * 100 - from * from - to * to) / 2000;
   return (2 * 100 - from - to) / 1000 + (length_mm - ramps_mm) / 100;
+}
+
+TEST(PrintTime, ACurveIsBoundByItsTurnWhateverTheTurn) {
+  // A short move between two long ones, by the same turn u from each: v_j^2 is the least of
+  // 100^2, a d sin(t/2) / (1 - sin(t/2)) with t = 180 degrees - u, and a L / u.
+  std::size_t by_curve = 0;
+  for (const double junction_mm : {0.01, 1.0})
+    for (const double short_mm : {0.02, 0.3, 0.9})
+      for (double turn = 0.002; turn < 0.78; turn *= 1.01) {
+        Printer printer = round_printer();
+        printer.junction_mm = junction_mm;
+        const double sin_half = std::cos(turn / 2);
+        const double corner2 = std::min(1e4, 1000 * junction_mm * sin_half / (1 - sin_half));
+        const double curve2 = 1000 * short_mm / turn;
+        by_curve += curve2 < corner2 ? 1 : 0;
+        const double joint = std::sqrt(std::min(corner2, curve2));
+        const double peak2 = std::min(1e4, 1000 * short_mm + joint * joint);
+        const double ramps_mm = (peak2 - joint * joint) / 1000;
+        const double wanted = 2 * leg_s(100, 0, joint) + 2 * (std::sqrt(peak2) - joint) / 1000 +
+                              (short_mm - ramps_mm) / std::sqrt(peak2);
+        const Point2 a{100, 0};
+        const Point2 b = a + short_mm * Point2{std::cos(turn), std::sin(turn)};
+        const Point2 c = b + 100 * Point2{std::cos(2 * turn), std::sin(2 * turn)};
+        EXPECT_NEAR(extrude_s({{0, 0}, a, b, c}, printer), wanted, 1e-9)
+            << junction_mm << ' ' << short_mm << ' ' << turn;
+      }
+  EXPECT_GT(by_curve, 500U);
 }
 
 TEST(PrintTime, ByJerkCornersAndEndsHaveASpeedAtOnce) {

@@ -74,9 +74,11 @@ void BitPlane::flip_right_of(Point2 a, Point2 b) {
     // So few that the line is in few strips.
     constexpr std::int64_t kRowsAtOnce = 64;
     const std::int64_t end_of_some = std::min(row + kRowsAtOnce, end);
-    const auto [first_strip, last_strip] = std::minmax({strip_at(row), strip_at(end_of_some - 1)});
+    const std::size_t from = strip_at(row);
+    const std::size_t to = strip_at(end_of_some - 1);
+    const std::size_t first_strip = std::min(from, to);
     // Beyond the last strip its partner's flips go on to the end of the row.
-    const std::size_t end_strip = std::min(last_strip + 1, strips());
+    const std::size_t end_strip = std::min(std::max(from, to) + 1, strips());
     const auto begin_row = static_cast<std::size_t>(row);
     const auto end_row = static_cast<std::size_t>(end_of_some);
     row_loops().flip(line, begin_row, end_row, first_strip, end_strip, words_.data(),

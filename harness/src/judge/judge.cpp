@@ -70,6 +70,9 @@ void score_travels(ScoreSheet& sheet, const std::optional<Travel>& entry,
 void score_time(ScoreSheet& sheet, const std::optional<Travel>& entry, const std::vector<Run>& runs,
                 const std::vector<Travel>& between, const Printer& printer) {
   std::vector<judging::Move> moves;
+  std::size_t points = 1;
+  for (const Run& run : runs) points += run.points.size();
+  moves.reserve(points);  // one after each at most, and the entry
   const auto travel = [&moves](const Travel& way) {
     moves.push_back({way.from, way.to, false, way.retracted});
   };

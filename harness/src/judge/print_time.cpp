@@ -42,19 +42,25 @@ void measure_stretches(std::vector<Leg>& legs) {
   }
 }
 
-/// Speed at which two moves may meet, squared; see print_time.
-double junction2(const Leg& before, const Leg& after, const Printer& printer) {
+/// Speed at which two moves of no more than a top speed may meet, squared; see print_time.
+double junction2(const Leg& before, const Leg& after, double top2, const Printer& printer) {
   // cos t = -cos(turn); sin^2(t/2) = (1 - cos t) / 2.
   const double cos_turn =
       std::clamp(dot(before.way, after.way) / (before.length_mm * after.length_mm), -1.0, 1.0);
   const double sin_half = std::sqrt((1 + cos_turn) / 2);
-  if (sin_half >= 1) return std::numeric_limits<double>::infinity();
-  const double corner2 = printer.accel_mm_s2 * printer.junction_mm * sin_half / (1 - sin_half);
+  if (sin_half >= 1) return top2;
+  const double corner2 =
+      std::min(top2, printer.accel_mm_s2 * printer.junction_mm * sin_half / (1 - sin_half));
   const double stretch_mm = std::min(before.straight_mm, after.straight_mm);
   if (stretch_mm >= kShortStretchMm || cos_turn <= kSlightTurnCos ||
       goes_straight_on(before, after))
     return corner2;
-  return std::min(corner2, printer.accel_mm_s2 * stretch_mm / std::acos(cos_turn));
+  // A turn u <= 45 degrees has u^2 < 2.11 (1 - cos u): mostly that tells that the curve allows
+  // more.
+  constexpr double kTurn2 = 2.2;
+  const double pull = printer.accel_mm_s2 * stretch_mm;
+  if (pull * pull > kTurn2 * (1 - cos_turn) * (corner2 * corner2)) return corner2;
+  return std::min(corner2, pull / std::acos(cos_turn));
 }
 
 /// The change of speed of one axis between two moves. One that reverses stops on the way, so it
@@ -74,12 +80,17 @@ double jerk_junction2(const Leg& before, const Leg& after, double top2, double j
   return top2 * share * share;
 }
 
+struct Speed {
+  double mm_s = 0;
+  double square = 0;
+};
+
 /// Time from one speed to another over a leg.
-double leg_time(const Leg& leg, double entry2, double exit2, double accel) {
-  const double peak2 = std::min(leg.top2, accel * leg.length_mm + (entry2 + exit2) / 2);
+double leg_time(const Leg& leg, Speed entry, Speed exit, double accel) {
+  const double peak2 = std::min(leg.top2, accel * leg.length_mm + (entry.square + exit.square) / 2);
   const double peak = std::sqrt(peak2);
-  const double ramps_mm = (2 * peak2 - entry2 - exit2) / (2 * accel);
-  return (2 * peak - std::sqrt(entry2) - std::sqrt(exit2)) / accel +
+  const double ramps_mm = (2 * peak2 - entry.square - exit.square) / (2 * accel);
+  return (2 * peak - entry.mm_s - exit.mm_s) / accel +
          std::max(0.0, leg.length_mm - ramps_mm) / peak;
 }
 
@@ -88,6 +99,7 @@ double leg_time(const Leg& leg, double entry2, double exit2, double accel) {
 PrintTime print_time(const std::vector<Move>& moves, const Printer& printer) {
   PrintTime time;
   std::vector<Leg> legs;
+  legs.reserve(moves.size());
   bool standing = true;
   const double jerk2 = printer.jerk_mm_s * printer.jerk_mm_s;
   for (const Move& move : moves) {
@@ -112,7 +124,7 @@ PrintTime print_time(const std::vector<Move>& moves, const Printer& printer) {
     if (leg.from_rest) continue;
     leg.entry2 = jerk2 > 0 ? std::max(leg.entry2,
                                       jerk_junction2(legs[i - 1], leg, slower2, printer.jerk_mm_s))
-                           : std::min(slower2, junction2(legs[i - 1], leg, printer));
+                           : junction2(legs[i - 1], leg, slower2, printer);
   }
 
   const double last2 = legs.empty() ? 0 : std::min(legs.back().top2, jerk2);
@@ -121,16 +133,16 @@ PrintTime print_time(const std::vector<Move>& moves, const Printer& printer) {
     legs[i].entry2 = std::min(legs[i].entry2, next2 + 2 * printer.accel_mm_s2 * legs[i].length_mm);
     next2 = legs[i].entry2;
   }
+  const auto speed = [](double square) { return Speed{std::sqrt(square), square}; };
+  Speed entry = speed(legs.empty() ? 0 : legs.front().entry2);
   for (std::size_t i = 0; i < legs.size(); ++i) {
-    double exit2 = std::min(last2, legs[i].entry2 + 2 * printer.accel_mm_s2 * legs[i].length_mm);
-    if (i + 1 < legs.size()) {
-      Leg& next = legs[i + 1];
-      next.entry2 =
-          std::min(next.entry2, legs[i].entry2 + 2 * printer.accel_mm_s2 * legs[i].length_mm);
-      exit2 = next.entry2;
-    }
-    (legs[i].extrudes ? time.extrude_s : time.travel_s) +=
-        leg_time(legs[i], legs[i].entry2, exit2, printer.accel_mm_s2);
+    const Leg& leg = legs[i];
+    const double allowed2 = i + 1 < legs.size() ? legs[i + 1].entry2 : last2;
+    const Speed exit =
+        speed(std::min(allowed2, entry.square + 2 * printer.accel_mm_s2 * leg.length_mm));
+    (leg.extrudes ? time.extrude_s : time.travel_s) +=
+        leg_time(leg, entry, exit, printer.accel_mm_s2);
+    entry = exit;
   }
   return time;
 }

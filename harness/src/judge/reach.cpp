@@ -5,6 +5,7 @@
 #include <numbers>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "judge/bit_plane.hpp"
 #include "judge/cell_rows.hpp"
@@ -26,16 +27,17 @@ constexpr double kRounding = 1e-6;       // in steps, far above what arithmetic 
 void remove_reach(SamplesLeft& samples, const std::vector<Run>& runs, double radius_mm,
                   double slack_mm) {
   const auto visit_pieces = [&](auto&& visit) {
-    for (const Run& run : runs) {
-      Point2 from = run.points.front();
-      for (std::size_t i = 0; i < run.widths_mm.size(); ++i) {
-        const Point2 to = run.points[i + 1];
-        if (run.widths_mm[i] <= 0) {
+    // Backwards: lines that fill come after walls, and leave few samples for these.
+    for (auto run = runs.rbegin(); run != runs.rend() && !samples.empty(); ++run) {
+      Point2 from = run->points.front();
+      for (std::size_t i = 0; i < run->widths_mm.size(); ++i) {
+        const Point2 to = run->points[i + 1];
+        if (run->widths_mm[i] <= 0) {
           from = to;
           continue;
         }
         const double length = distance(from, to);
-        const bool last = i + 1 == run.widths_mm.size() || run.widths_mm[i + 1] <= 0;
+        const bool last = i + 1 == run->widths_mm.size() || run->widths_mm[i + 1] <= 0;
         if (!last && length < slack_mm) continue;
         visit(from, to, length);
         from = to;
@@ -46,10 +48,21 @@ void remove_reach(SamplesLeft& samples, const std::vector<Run>& runs, double rad
   visit_pieces([&](Point2 a, Point2 b, double length_mm) {
     if (length_mm >= radius_mm) samples.remove(a, b, radius_mm);
   });
-  if (samples.count() == 0) return;
+  constexpr std::size_t kTogether = 8;
+  std::vector<Point2> path;  // of short pieces
+  const auto remove_path = [&] {
+    samples.remove(path, radius_mm);
+    path.clear();
+  };
   visit_pieces([&](Point2 a, Point2 b, double length_mm) {
-    if (length_mm < radius_mm) samples.remove(a, b, radius_mm);
+    if (length_mm >= radius_mm) return;
+    if (path.empty() || path.back() != a || path.size() > kTogether) {
+      remove_path();
+      path.push_back(a);
+    }
+    path.push_back(b);
   });
+  remove_path();
 }
 
 /// How far a sparse line reaches.

@@ -38,10 +38,14 @@ std::vector<Run> runs_of(const Route& route, double join_mm) {
     const Stroke& stroke = route.strokes[place];
     check(stroke, place);
     const Point2 start = stroke.points.front();
-    if (runs.empty() || distance(runs.back().points.back(), start) > join_mm)
-      runs.push_back({{start}, {}, false});
-    else
+    if (runs.empty() || distance(runs.back().points.back(), start) > join_mm) {
+      Run& run = runs.emplace_back();
+      run.points.reserve(stroke.points.size());  // mostly it is all of the run
+      run.widths_mm.reserve(stroke.points.size());
+      run.points.push_back(start);
+    } else {
       go_to(start, 0);
+    }
     for (const Point2 p : stroke.points) go_to(p, stroke.width_mm);
   }
   for (Run& run : runs)

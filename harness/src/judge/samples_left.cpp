@@ -4,22 +4,49 @@
 
 namespace routebench::judging {
 
-bool SamplesLeft::any_near(Point2 a, Point2 b, double radius) const {
-  const auto [left, right] = std::minmax(a.x, b.x);
-  const auto [lower, upper] = std::minmax(a.y, b.y);
-  return left_.any(span_between(lower - radius, upper + radius),
-                   span_between(left - radius, right + radius));
+bool SamplesLeft::any_near(Point2 lower, Point2 upper, double radius) const {
+  return left_.any(span_between(lower.y - radius, upper.y + radius),
+                   span_between(lower.x - radius, upper.x + radius));
+}
+
+void SamplesLeft::remove_capsule(Point2 a, Point2 b, double radius) {
+  // Not by std::minmax, which compilers make branches of.
+  if (!any_near({std::min(a.x, b.x), std::min(a.y, b.y)}, {std::max(a.x, b.x), std::max(a.y, b.y)},
+                radius))
+    return;
+  Capsule(Segment(a, b), radius).visit(left_.grid().size(), [this](const RowSpans& rows) {
+    left_.remove(rows);
+  });
 }
 
 void SamplesLeft::remove(Point2 a, Point2 b, double radius_mm) {
   const SampleGrid& grid = left_.grid();
-  const Point2 from = grid.to_steps(a);
-  const Point2 to = grid.to_steps(b);
+  remove_capsule(grid.to_steps(a), grid.to_steps(b), grid.to_steps(radius_mm));
+}
+
+void SamplesLeft::remove(std::span<const Point2> path, double radius_mm) {
+  if (path.empty()) return;
+  const SampleGrid& grid = left_.grid();
   const double radius = grid.to_steps(radius_mm);
-  if (!any_near(from, to, radius)) return;
-  Capsule(Segment(from, to), radius).visit(grid.size(), [this](const RowSpans& rows) {
-    left_.remove(rows);
-  });
+  Point2 lower = grid.to_steps(path.front());
+  Point2 upper = lower;
+  for (const Point2 p : path.subspan(1)) {
+    const Point2 steps = grid.to_steps(p);
+    lower = {std::min(lower.x, steps.x), std::min(lower.y, steps.y)};
+    upper = {std::max(upper.x, steps.x), std::max(upper.y, steps.y)};
+  }
+  if (!any_near(lower, upper, radius)) return;
+  for (std::size_t i = 1; i < path.size(); ++i)
+    remove_capsule(grid.to_steps(path[i - 1]), grid.to_steps(path[i]), radius);
+}
+
+bool SamplesLeft::empty() {
+  for (; strip_ < left_.strips(); ++strip_, row_ = 0) {
+    const BitPlane::Rows used = left_.used(strip_);
+    for (row_ = std::max(row_, used.first); row_ < used.end; ++row_)
+      if (left_.word(strip_, row_) != 0) return false;
+  }
+  return true;
 }
 
 void SamplesLeft::remove(const Polygons& polygons, double radius_mm) {

@@ -74,14 +74,13 @@ class Pieces {
                     std::clamp(p.y, 0.0, static_cast<double>(grid.rows()) - kRounding)};
     };
     from_ = place(shares.enter);
-    const double over = shares.leave - shares.enter;
-    count_ = static_cast<double>(rounded_up(over * least));
-    share_ = over / count_;
+    over_ = shares.leave - shares.enter;
+    count_ = static_cast<double>(rounded_up(over_ * least));
     step_ = (1 / count_) * (place(shares.leave) - from_);
   }
 
   /// Of the segment's length, that of a piece.
-  [[nodiscard]] double share() const noexcept { return share_; }
+  [[nodiscard]] double share() const noexcept { return over_ / count_; }
 
   /// Calls visit(column, row) for the sample nearest to the middle of each piece.
   template <typename Visit>
@@ -98,7 +97,7 @@ class Pieces {
   Point2 from_;
   Point2 step_;
   double count_ = 0;
-  double share_ = 0;
+  double over_ = 0;  // share of the segment
 };
 
 /// What one part of a layer demands and gets, in cells of equally many samples.
@@ -110,6 +109,7 @@ class PartLedger {
         line_distance_mm_(line_distance_mm),
         cell_shift_(cell_shift(grid_.to_steps(line_distance_mm))),
         cell_steps_(std::size_t{1} << cell_shift_),
+        pieces_a_step_(2 / static_cast<double>(cell_steps_)),
         box_(grid_, part, cell_steps_),
         demanded_(cells(box_.end_column - box_.first_column), cells(box_.end_row - box_.first_row)),
         laid_(demanded_),
@@ -124,9 +124,11 @@ class PartLedger {
     if (!box_.may_hold_of(from, to)) return;
     const double length_mm = distance(a, b);
     const Pieces pieces(grid_, from, to, least_pieces(length_mm));
-    const float filled = samples_filled_by(pieces.share() * length_mm * strength);
-    pieces.visit([this, filled](std::size_t column, std::size_t row) {
-      if (part_.test(column, row)) cell_at(laid_, column, row) += filled;
+    float filled = 0;  // not known yet: most beads of walls lay nothing here
+    pieces.visit([&](std::size_t column, std::size_t row) {
+      if (!part_.test(column, row)) return;
+      if (filled == 0) filled = samples_filled_by(pieces.share() * length_mm * strength);
+      cell_at(laid_, column, row) += filled;
     });
   }
 
@@ -222,7 +224,7 @@ class PartLedger {
 
   /// Of at most half a cell each.
   [[nodiscard]] double least_pieces(double length_mm) const {
-    return grid_.to_steps(length_mm) * 2 / static_cast<double>(cell_steps_);
+    return grid_.to_steps(length_mm) * pieces_a_step_;
   }
 
   /// Every mm of line fills its distance's width.
@@ -241,6 +243,7 @@ class PartLedger {
   double line_distance_mm_;
   unsigned cell_shift_;  // of columns and rows to their cells
   std::size_t cell_steps_;
+  double pieces_a_step_;
   SampleBox box_;
   CellField demanded_;  // in samples
   CellField laid_;
@@ -251,8 +254,14 @@ double skipped_of_part_mm2(const BitPlane& samples, const Polygons& part, double
                            const std::vector<Run>& runs, const Task& task) {
   if (part.empty()) return 0;
   PartLedger ledger(samples, part, line_distance_mm);
+  double known_width_mm = 0;  // most beads are as wide as the one before
+  double strength = 0;
   visit_beads(runs, [&](Point2 a, Point2 b, double width_mm) {
-    ledger.lay(a, b, task.mean_width_mm(width_mm) / task.spacing_mm());
+    if (width_mm != known_width_mm) {
+      known_width_mm = width_mm;
+      strength = task.mean_width_mm(width_mm) / task.spacing_mm();
+    }
+    ledger.lay(a, b, strength);
   });
   for (const Polygon& polygon : part) {
     ledger.lay_boundary(polygon.outer);

@@ -47,6 +47,13 @@ class EdgeGrid {
     std::vector<std::uint32_t> begin;
     std::vector<std::uint32_t> items;
   };
+  struct Cells {
+    std::int64_t first_column, last_column;
+    std::int64_t first_row, last_row;
+  };
+  /// The cells that a box meets, or else those nearest to it.
+  [[nodiscard]] Cells cells_of(double lower_x, double lower_y, double upper_x,
+                               double upper_y) const;
   /// Calls visit(cell) for every cell that comes within margin_mm of segment ab.
   template <typename Visit>
   void visit_cells(Point2 a, Point2 b, double margin_mm, Visit&& visit) const;
