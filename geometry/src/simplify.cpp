@@ -12,7 +12,7 @@
 namespace routebench {
 namespace {
 
-constexpr std::size_t kUsualBytes = 4096;
+constexpr std::size_t kUsualPoints = 256;  // of a ring, or fewer
 
 /// Marks what is needed of the stretch between two points.
 void mark_needed(const std::vector<Point2>& points, std::size_t first, std::size_t last,
@@ -149,19 +149,29 @@ Ring straightened_ring(const Ring& ring, double tolerance_mm) {
   if (ring.size() < 3) return ring;
   const std::size_t n = ring.size(), first = farthest_corner(ring);
   const auto at = [&](std::size_t i) { return ring[first + i < n ? first + i : first + i - n]; };
-  // Of many rings most points go: these would grow step by step.
-  std::array<std::byte, kUsualBytes> usual;
-  std::pmr::monotonic_buffer_resource memory(usual.data(), usual.size());
-  std::pmr::vector<Point2> kept({at(0)}, &memory);
-  Cone cone(at(0), tolerance_mm);
-  for (std::size_t i = 1; i <= n; ++i) {
-    const Point2 p = at(i == n ? 0 : i);
-    if (!cone.admits(p)) {
-      kept.push_back(at(i - 1));
-      cone = Cone(kept.back(), tolerance_mm);
+  const auto keep_needed = [&](auto& kept) {
+    kept.push_back(at(0));
+    Cone cone(at(0), tolerance_mm);
+    for (std::size_t i = 1; i <= n; ++i) {
+      const Point2 p = at(i == n ? 0 : i);
+      if (!cone.admits(p)) {
+        kept.push_back(at(i - 1));
+        cone = Cone(kept.back(), tolerance_mm);
+      }
+      cone.narrow(p);
     }
-    cone.narrow(p);
+  };
+  if (n > kUsualPoints) {
+    Ring kept;
+    keep_needed(kept);
+    return kept;
   }
+  // Most points of most rings go; what is left would grow step by step.
+  alignas(Point2) std::array<std::byte, kUsualPoints * sizeof(Point2)> usual;
+  std::pmr::monotonic_buffer_resource memory(usual.data(), usual.size());
+  std::pmr::vector<Point2> kept(&memory);
+  kept.reserve(n);
+  keep_needed(kept);
   return {kept.begin(), kept.end()};
 }
 
