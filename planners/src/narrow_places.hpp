@@ -15,8 +15,8 @@ namespace routebench {
 /// Takes   polygons, offset(area, -distance_mm), how much farther than expected the inset may be
 ///         (the depth of stubs of no interest, or for little of it half its square over the
 ///         distance; offsets are true to 5 um), and by how much boxes reach beyond such places.
-/// Returns disjoint boxes, or one around all of a small area; none is a proof that nothing was
-/// lost. Cost    linear in points and in length over distance.
+/// Returns disjoint boxes, or one around all of a small area; none proves that nothing was lost.
+/// Cost    linear in points and in length over distance.
 [[nodiscard]] std::vector<Box2> doubtful_places(const Polygons& inset, const Polygons& area,
                                                 double distance_mm, double slack_mm,
                                                 double margin_mm);

@@ -28,6 +28,8 @@ struct Edge {
   std::uint32_t ring;
 };
 
+constexpr std::size_t kFewBytes = kFewEdges * (sizeof(Edge) + sizeof(double));
+
 /// The edges of a polygon; of many also the boxes around runs of them, by halves.
 class EdgeTree {
  public:
@@ -148,7 +150,7 @@ class EdgeTree {
 bool has_near_sides(const Polygon& polygon, double width_mm, double apart_mm) {
   // No two places of one ring are farther apart than half its length.
   if (polygon.holes.empty() && perimeter_mm(polygon.outer) < 2 * apart_mm) return false;
-  std::array<std::byte, kFewEdges*(sizeof(Edge) + sizeof(double))> few;
+  std::array<std::byte, kFewBytes> few;
   std::pmr::monotonic_buffer_resource memory(few.data(), few.size());
   return EdgeTree(polygon, width_mm, apart_mm, &memory).has_near_sides();
 }

@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <cstdlib>
 #include <span>
-#include <tuple>
 #include <utility>
 #include <vector>
 

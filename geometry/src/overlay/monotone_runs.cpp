@@ -119,11 +119,7 @@ class Search {
       if (next(a.begin, a.ring) == b.begin) return turns_back(e.from, e.to, f.to);
       if (next(b.begin, b.ring) == a.begin) return turns_back(f.from, f.to, e.to);
     }
-    const auto apart = [](std::int64_t s, std::int64_t t) {
-      return (s > 0 && t > 0) || (s < 0 && t < 0);
-    };
-    return !apart(turn(e.from, e.to, f.from), turn(e.from, e.to, f.to)) &&
-           !apart(turn(f.from, f.to, e.from), turn(f.from, f.to, e.to));
+    return overlay::edges_meet(e, f);
   }
 
   const GridRings& rings_;

@@ -5,6 +5,7 @@
 #include "judge/row_loops.hpp"
 
 namespace routebench::judging {
+
 NeighbourhoodMeans::NeighbourhoodMeans(const CellField& field, std::size_t reach,
                                        std::span<const Columns> wanted)
     : field_(field),

@@ -3,19 +3,16 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <limits>
 
 #include "judge/rounding.hpp"
 
 namespace routebench::judging {
 
-/// Columns of a sample grid from `left` to `right`, or none if left > right. Those beyond the grid
-/// count, too.
+/// Columns or rows of a sample grid from `left` to `right`, or none if left > right. Those beyond
+/// the grid count, too.
 struct Span {
-  std::int64_t left = std::numeric_limits<std::int64_t>::max();
-  std::int64_t right = std::numeric_limits<std::int64_t>::min();
-
-  [[nodiscard]] bool empty() const noexcept { return left > right; }
+  std::int64_t left;
+  std::int64_t right;
 };
 
 /// The columns from one place to another, in steps: however far away, for what is all but level may
