@@ -18,18 +18,41 @@ namespace routebench {
 namespace {
 
 using judging::Capsule;
+using judging::CapsuleShape;
+using judging::GridPart;
 using judging::GridSize;
 using judging::kWordBits;
 using judging::RowLoops;
-using judging::RowSpans;
 using judging::Segment;
 
-/// Whether a column is meant by a row.
-bool holds(const RowSpans& rows, std::size_t i, std::size_t column) {
-  const auto c = static_cast<std::int64_t>(column);
-  return rows.left[i] <= c && c < rows.end[i] &&
-         !(rows.is_cut && rows.cut_left[i] <= c && c < rows.cut_end[i]);
-}
+/// Samples of a grid, strip by strip as in StripWords.
+struct Samples {
+  GridSize grid;
+  std::vector<std::uint64_t> words;
+
+  explicit Samples(GridSize size)
+      : grid(size),
+        words((size.columns + kWordBits - 1) / kWordBits * size.rows + judging::StripWords::kRoom) {
+  }
+
+  [[nodiscard]] bool test(std::size_t column, std::size_t row) const {
+    return (words[column / kWordBits * grid.rows + row] >> (column % kWordBits) & 1U) != 0;
+  }
+
+  /// Adds a capsule's samples, each of which is to be in one part of the grid only.
+  void add(const Capsule& capsule, const RowLoops& loops) {
+    std::size_t next = 0;
+    capsule.visit(grid, [&](const CapsuleShape& shape, const GridPart& part) {
+      EXPECT_GE(part.first_row, next);
+      EXPECT_LT(part.first_row, part.end_row);
+      EXPECT_LT(part.first_word, part.end_word);
+      next = part.end_row;
+      ASSERT_LE(next, grid.rows);
+      ASSERT_LE(part.end_word * grid.rows + judging::StripWords::kRoom, words.size());
+      loops.add(shape, part, words.data(), grid.rows);
+    });
+  }
+};
 
 /// A segment of some kind or other: any, upright, level, a point, all but a point, short.
 struct TestCapsule {
@@ -73,30 +96,18 @@ TEST(JudgeCapsules, HoldExactlyThePointsInReach) {
   std::mt19937_64 random(3);
   for (int round = 0; round < 1400; ++round) {
     const auto [a, b, radius] = random_capsule(random, round, kGrid);
-    std::vector<std::vector<bool>> met(kGrid.rows, std::vector<bool>(kGrid.columns));
-    std::size_t next = 0;
-    Capsule(Segment(a, b), radius).visit(kGrid, [&](const RowSpans& rows) {
-      EXPECT_GE(rows.first_row, next);  // each once, upwards
-      next = rows.first_row + rows.count;
-      ASSERT_LE(next, kGrid.rows);
-      for (std::size_t i = rows.count; i < rows.count + RowSpans::kRoom; ++i)
-        EXPECT_LE(rows.end[i], rows.left[i]);
-      for (std::size_t i = 0; i < rows.count; ++i)
-        for (std::size_t column = 0; column < kGrid.columns; ++column)
-          if (holds(rows, i, column)) {
-            met[rows.first_row + i][column] = true;
-            EXPECT_GE(column / kWordBits, rows.first_word);
-            EXPECT_LT(column / kWordBits, rows.end_word);
+    for (const RowLoops* loops : judging::runnable_row_loops()) {
+      Samples met(kGrid);
+      met.add(Capsule(Segment(a, b), radius), *loops);
+      for (std::size_t row = 0; row < kGrid.rows; ++row)
+        for (std::size_t column = 0; column < kGrid.columns; ++column) {
+          const Point2 p{static_cast<double>(column), static_cast<double>(row)};
+          const double away = distance(p, nearest_on_segment(p, a, b));
+          if (std::abs(away - radius) > 1e-6) {
+            EXPECT_EQ(met.test(column, row), away < radius) << loops->name;
           }
-    });
-    for (std::size_t row = 0; row < kGrid.rows; ++row)
-      for (std::size_t column = 0; column < kGrid.columns; ++column) {
-        const Point2 p{static_cast<double>(column), static_cast<double>(row)};
-        const double away = distance(p, nearest_on_segment(p, a, b));
-        if (std::abs(away - radius) > 1e-6) {
-          EXPECT_EQ(met[row][column], away < radius);
         }
-      }
+    }
   }
 }
 
@@ -105,82 +116,81 @@ TEST(JudgeCapsules, WithoutTheirStartHoldAllBeyondTheDiscThere) {
   std::mt19937_64 random(9);
   for (int round = 0; round < 1400; ++round) {
     const auto [a, b, radius] = random_capsule(random, round, kGrid);
-    std::vector<std::vector<bool>> met(kGrid.rows, std::vector<bool>(kGrid.columns));
-    std::vector<std::vector<bool>> left_whole = met;
-    Capsule capsule(Segment(a, b), radius);
-    capsule.leave_start();
-    const auto note = [&kGrid](std::vector<std::vector<bool>>& noted, const RowSpans& rows) {
-      for (std::size_t i = 0; i < rows.count; ++i)
-        for (std::size_t column = 0; column < kGrid.columns; ++column)
-          if (holds(rows, i, column)) noted[rows.first_row + i][column] = true;
-    };
-    capsule.visit(kGrid, [&](RowSpans& rows) {
-      note(left_whole, rows);
-      capsule.cut_start(rows);
-      note(met, rows);
-    });
-    for (std::size_t row = 0; row < kGrid.rows; ++row)
-      for (std::size_t column = 0; column < kGrid.columns; ++column) {
-        const Point2 p{static_cast<double>(column), static_cast<double>(row)};
-        const double away = distance(p, nearest_on_segment(p, a, b));
-        if (std::abs(away - radius) < 1e-6 || std::abs(distance(p, a) - radius) < 1e-6) continue;
-        EXPECT_EQ(met[row][column], away < radius && distance(p, a) > radius);
-        // Rows that are left out lie in the disc.
-        if (distance(p, a) > radius) {
-          EXPECT_EQ(left_whole[row][column], away < radius);
+    for (const RowLoops* loops : judging::runnable_row_loops()) {
+      Capsule capsule(Segment(a, b), radius);
+      capsule.leave_start();
+      Samples left_whole(kGrid);
+      left_whole.add(capsule, *loops);
+      capsule.cut_start();
+      Samples met(kGrid);
+      met.add(capsule, *loops);
+      for (std::size_t row = 0; row < kGrid.rows; ++row)
+        for (std::size_t column = 0; column < kGrid.columns; ++column) {
+          const Point2 p{static_cast<double>(column), static_cast<double>(row)};
+          const double away = distance(p, nearest_on_segment(p, a, b));
+          if (std::abs(away - radius) < 1e-6 || std::abs(distance(p, a) - radius) < 1e-6) continue;
+          EXPECT_EQ(met.test(column, row), away < radius && distance(p, a) > radius) << loops->name;
+          // Rows that are left out lie in the disc.
+          if (distance(p, a) > radius) {
+            EXPECT_EQ(left_whole.test(column, row), away < radius) << loops->name;
+          }
         }
-      }
+    }
   }
 }
 
 TEST(JudgeCapsules, HaveStraightSidesHoweverLong) {
-  // However long, steep, nearly level or far away: no error adds up along the sides.
-  constexpr GridSize kGrid{4000, 20000000};
+  // However long, steep, nearly level or far away: no error adds up along the sides, seen where
+  // they cross a window.
+  constexpr GridSize kGrid{200, 400};
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> unit(0, 1);
   std::size_t sides = 0;
-  for (int round = 0; round < 400; ++round) {
+  for (int round = 0; round < 1400; ++round) {
     const double scale = std::pow(10.0, 1 + round % 7);
-    const Point2 a{scale * unit(random), 4000 * unit(random)};
-    const Point2 b{scale * unit(random), round % 3 == 0 ? a.y + unit(random) : 4000 * unit(random)};
+    const Point2 run{scale * (unit(random) - 0.5),
+                     round % 3 == 0 ? 200 * unit(random) : scale * unit(random)};
     const double radius = 2 + 6 * unit(random);
-    const Point2 run = b - a;
-    const double half_width = radius * distance(a, b) / std::abs(run.y);
-    const double rise = radius * std::abs(run.x) / distance(a, b) / std::abs(run.y);
-    Capsule(Segment(a, b), radius).visit(kGrid, [&](const RowSpans& rows) {
-      for (std::size_t i = 0; i < rows.count; ++i) {
-        const double share = (static_cast<double>(rows.first_row + i) - a.y) / run.y;
-        if (share < rise || share > 1 - rise) continue;  // on an arc
-        const Point2 middle = lerp(a, b, share);
-        const double off = 1e-12 * (scale + half_width) + 1e-9;
-        const double left = std::max(middle.x - half_width, 0.0);
-        const double right =
-            std::min(middle.x + half_width, static_cast<double>(kGrid.columns - 1));
-        EXPECT_GE(static_cast<double>(rows.left[i]), left - off);
-        EXPECT_LT(static_cast<double>(rows.left[i]), left + 1 + off);
-        EXPECT_LE(static_cast<double>(rows.end[i] - 1), right + off);
-        EXPECT_GT(static_cast<double>(rows.end[i] - 1), right - 1 - off);
-        ++sides;
+    const double length = distance({0, 0}, run);
+    const double half_width = radius * length / run.y;
+    // A place on a side, somewhere along it, comes into the window.
+    const double share_there = unit(random);
+    const double side = round % 2 == 0 ? half_width : -half_width;
+    const Point2 there{400 * unit(random) - side, 200 * unit(random)};
+    const Point2 a = there - share_there * run;
+    const Point2 b = a + run;
+    Samples met(kGrid);
+    met.add(Capsule(Segment(a, b), radius), judging::row_loops());
+    const double rise = radius * std::abs(run.x) / length / run.y;
+    const double off = 1e-12 * (scale + half_width) + 1e-9;
+    for (std::size_t row = 0; row < kGrid.rows; ++row) {
+      const double share = (static_cast<double>(row) - a.y) / (b - a).y;
+      if (share < rise || share > 1 - rise) continue;  // on an arc
+      const double middle = lerp(a, b, share).x;
+      for (std::size_t column = 0; column < kGrid.columns; ++column) {
+        const double away = std::abs(static_cast<double>(column) - middle);
+        if (std::abs(away - half_width) > off) {
+          EXPECT_EQ(met.test(column, row), away < half_width);
+        }
       }
-    });
+      for (const double x : {middle - half_width, middle + half_width})
+        if (x > 0 && x < static_cast<double>(kGrid.columns)) ++sides;
+    }
   }
-  EXPECT_GT(sides, 100000U);
+  EXPECT_GT(sides, 20000U);
 }
 
 TEST(JudgeCapsules, CoverTheirRowsBeyondAllMeasure) {
   constexpr double kFar = 2e10;  // steps in 1e9 mm
-  constexpr GridSize kGrid{101, 4000001};
+  constexpr GridSize kGrid{101, 100001};
   for (const double rise : {0.0, 1e-10, 1e-6, 1.0, 100.0, kFar}) {
-    std::size_t row_count = 0;
     const Segment segment({-kFar, 50.5 - rise / 2}, {kFar, 50.5 + rise / 2});
-    Capsule(segment, kFar / 2).visit(kGrid, [&](const RowSpans& rows) {
-      for (std::size_t i = 0; i < rows.count; ++i) {
-        EXPECT_EQ(rows.left[i], 0) << rise;
-        EXPECT_EQ(rows.end[i], 4000001) << rise;
-      }
-      row_count += rows.count;
-    });
-    EXPECT_EQ(row_count, kGrid.rows) << rise;
+    Samples met(kGrid);
+    met.add(Capsule(segment, kFar / 2), judging::row_loops());
+    std::size_t count = 0;
+    for (const std::uint64_t word : met.words)
+      count += static_cast<std::size_t>(std::popcount(word));
+    EXPECT_EQ(count, kGrid.rows * kGrid.columns) << rise;
   }
 }
 
@@ -191,70 +201,53 @@ std::vector<const RowLoops*> other_loops() {
   return loops;
 }
 
-TEST(JudgeRowLoops, CutExactlyTheDisc) {
-  std::mt19937_64 random(28);
-  std::uniform_real_distribution<double> unit(0, 1);
-  for (const RowLoops* loops : judging::runnable_row_loops())
-    for (int round = 0; round < 200; ++round) {
-      Point2 centre{100 * unit(random), 60 * unit(random)};
-      if (round % 3 == 0) centre.x = std::round(centre.x);
-      const double radius = round % 2 == 0 ? 40 * unit(random) : unit(random);
-      RowSpans rows;
-      rows.first_row = 5;
-      rows.count = 1 + random() % RowSpans::kMost;
-      const std::size_t begin = random() % rows.count;
-      const std::size_t end = begin + 1 + random() % (rows.count - begin);
-      loops->cut_disc({centre.x, centre.y, radius * radius}, begin, end, rows);
-      EXPECT_TRUE(rows.is_cut);
-      for (std::size_t i = 0; i < end; ++i)
-        for (std::int64_t column = -50; column < 150; ++column) {
-          const Point2 p{static_cast<double>(column), static_cast<double>(rows.first_row + i)};
-          const double away = distance(p, centre);
-          if (std::abs(away - radius) < 1e-6) continue;
-          EXPECT_EQ(rows.cut_left[i] <= column && column < rows.cut_end[i],
-                    i >= begin && away < radius)
-              << loops->name;
-        }
-    }
+/// Any numbers: no capsule need have them.
+CapsuleShape random_shape(std::mt19937_64& random, int round) {
+  const auto number = [&random](double from, double to) {
+    return std::uniform_real_distribution<double>(from, to)(random);
+  };
+  CapsuleShape shape{.low_x = number(-100, 600),
+                     .low_y = number(-10, 70),
+                     .high_x = number(-100, 600),
+                     .high_y = number(-10, 70),
+                     .radius = number(0, round % 2 == 0 ? 6 : 200),
+                     .slope = number(-10, 10),
+                     .half_width = number(0, round % 5 == 0 ? 1000 : 10),
+                     .left = {number(-10, 70), number(-10, 70)},
+                     .right = {number(-10, 70), number(-10, 70)},
+                     .begins_low = random() % 2 == 0,
+                     .is_cut = random() % 2 == 0};
+  if (round % 3 == 0)  // ties
+    for (double* tied :
+         {&shape.low_x, &shape.low_y, &shape.half_width, &shape.slope, &shape.radius})
+      *tied = std::round(*tied);
+  return shape;
+}
+
+GridPart random_part(std::mt19937_64& random, GridSize grid) {
+  GridPart part;
+  part.columns = grid.columns;
+  part.first_row = random() % grid.rows;
+  part.end_row = part.first_row + 1 + random() % (grid.rows - part.first_row);
+  const std::size_t strips = (grid.columns + kWordBits - 1) / kWordBits;
+  part.first_word = random() % strips;
+  part.end_word = part.first_word + 1 + random() % (strips - part.first_word);
+  return part;
 }
 
 TEST(JudgeRowLoops, DrawTheSameOnEveryProcessor) {
   constexpr GridSize kGrid{64, 500};
   std::mt19937_64 random(21);
-  std::uniform_real_distribution<double> unit(0, 1);
   for (const RowLoops* loops : other_loops())
-    for (int round = 0; round < 2000; ++round) {
-      // Any numbers: no capsule need have them.
-      const auto number = [&](double from, double to) { return from + (to - from) * unit(random); };
-      judging::CapsuleShape shape{.low_x = number(-100, 600),
-                                  .low_y = number(-10, 70),
-                                  .high_x = number(-100, 600),
-                                  .high_y = number(-10, 70),
-                                  .square = number(0, round % 2 == 0 ? 30 : 30000),
-                                  .slope = number(-10, 10),
-                                  .half_width = number(0, round % 5 == 0 ? 1000 : 10),
-                                  .left = {number(-10, 70), number(-10, 70)},
-                                  .right = {number(-10, 70), number(-10, 70)}};
-      if (round % 3 == 0) shape.low_x = std::round(shape.low_x);  // ties
-      if (round % 3 == 0) shape.half_width = std::round(shape.half_width);
-      if (round % 3 == 0) shape.slope = std::round(shape.slope);
-      if (round % 3 == 0) shape.low_y = std::round(shape.low_y);
-      const judging::DiscShape disc{shape.low_x, shape.low_y, shape.square};
-      const auto begin = static_cast<std::size_t>(number(0, 20));
-      const auto end = begin + static_cast<std::size_t>(number(1, 40));
-      const auto draw = [&](const RowLoops& drawn_by, bool straight) {
-        RowSpans rows;
-        rows.first_row = static_cast<std::size_t>(round % 7);
-        rows.count = kGrid.rows;
-        (straight ? drawn_by.straight_rows : drawn_by.rows)(shape, kGrid.columns, begin, end, rows);
-        drawn_by.cut_disc(disc, begin, end, rows);
-        std::vector<std::int64_t> all;
-        for (std::size_t i = begin; i < end; ++i)
-          all.insert(all.end(), {rows.left[i], rows.end[i], rows.cut_left[i], rows.cut_end[i]});
-        return all;
+    for (int round = 0; round < 4000; ++round) {
+      const CapsuleShape shape = random_shape(random, round);
+      const GridPart part = random_part(random, kGrid);
+      const auto drawn = [&](const RowLoops& drawn_by) {
+        Samples samples(kGrid);
+        drawn_by.add(shape, part, samples.words.data(), kGrid.rows);
+        return samples.words;
       };
-      for (const bool straight : {false, true})
-        EXPECT_EQ(draw(judging::kPlainLoops, straight), draw(*loops, straight)) << loops->name;
+      EXPECT_EQ(drawn(judging::kPlainLoops), drawn(*loops)) << loops->name;
     }
 }
 
@@ -266,55 +259,41 @@ std::vector<std::uint64_t> random_words(std::mt19937_64& random, std::size_t siz
   return words;
 }
 
-TEST(JudgeRowLoops, AddAndRemoveWhatSpansHold) {
+TEST(JudgeRowLoops, AddAndRemoveTheSameSamples) {
+  constexpr GridSize kGrid{64, 500};
   std::mt19937_64 random(25);
   for (const RowLoops* loops : judging::runnable_row_loops())
-    for (int round = 0; round < 300; ++round) {
-      const std::size_t rows = 70 + random() % 30;
-      const std::size_t strips = 1 + random() % 5;
-      RowSpans spans;
-      spans.count = 1 + random() % RowSpans::kMost;
-      spans.first_row = random() % (rows - spans.count + 1);
-      spans.first_word = random() % strips;
-      spans.end_word = spans.first_word + 1 + random() % (strips - spans.first_word);
-      spans.is_cut = random() % 2 == 0;
-      std::fill_n(spans.left + spans.count, RowSpans::kRoom, 0);
-      std::fill_n(spans.end + spans.count, RowSpans::kRoom, 0);
-      for (std::size_t i = 0; i < spans.count; ++i) {
-        const auto column = [&](std::size_t beyond) {
-          const std::size_t first = spans.first_word * kWordBits;
-          const std::size_t size = (spans.end_word - spans.first_word) * kWordBits;
-          return static_cast<std::int64_t>(first + random() % (size + 1 + 2 * beyond)) -
-                 static_cast<std::int64_t>(beyond);
-        };
-        spans.left[i] = column(0);
-        spans.end[i] = column(0);  // often none
-        spans.cut_left[i] = column(100);
-        spans.cut_end[i] = column(100);
-      }
-      const std::size_t size = strips * rows + judging::StripWords::kRoom;
+    for (int round = 0; round < 600; ++round) {
+      const CapsuleShape shape = random_shape(random, round);
+      const GridPart part = random_part(random, kGrid);
+      const std::size_t rows = kGrid.rows;
+      Samples meant(kGrid);
+      loops->add(shape, part, meant.words.data(), rows);
+      for (std::size_t row = 0; row < rows; ++row)
+        for (std::size_t column = 0; column < kGrid.columns; ++column)
+          if (meant.test(column, row)) {
+            EXPECT_TRUE(part.first_row <= row && row < part.end_row) << loops->name;
+            EXPECT_TRUE(part.first_word <= column / kWordBits && column / kWordBits < part.end_word)
+                << loops->name;
+          }
+      const std::size_t size = meant.words.size();
       const std::vector<std::uint64_t> before = random_words(random, size);
       const std::vector<std::uint64_t> again_before = random_words(random, size);
-      std::vector<std::uint64_t> meant(size);
-      for (std::size_t i = 0; i < spans.count; ++i)
-        for (std::size_t column = 0; column < strips * kWordBits; ++column)
-          if (holds(spans, i, column))
-            meant[column / kWordBits * rows + spans.first_row + i] |= std::uint64_t{1}
-                                                                      << (column % kWordBits);
       std::vector<std::uint64_t> added = before;
-      loops->add(spans, added.data(), rows);
+      loops->add(shape, part, added.data(), rows);
       std::vector<std::uint64_t> removed = before;
-      loops->remove(spans, removed.data(), rows);
+      loops->remove(shape, part, removed.data(), rows);
       std::vector<std::uint64_t> once = before;
       std::vector<std::uint64_t> again = again_before;
-      const bool met = loops->add_counting(spans, once.data(), again.data(), rows);
+      const bool met = loops->add_counting(shape, part, once.data(), again.data(), rows);
       bool any_met = false;
       for (std::size_t i = 0; i < size; ++i) {
-        any_met = any_met || (before[i] & meant[i]) != 0;
-        ASSERT_EQ(added[i], before[i] | meant[i]) << loops->name;
-        ASSERT_EQ(removed[i], before[i] & ~meant[i]) << loops->name;
-        ASSERT_EQ(once[i], before[i] | meant[i]) << loops->name;
-        ASSERT_EQ(again[i], again_before[i] | (before[i] & meant[i])) << loops->name;
+        const std::uint64_t mask = meant.words[i];
+        any_met = any_met || (before[i] & mask) != 0;
+        ASSERT_EQ(added[i], before[i] | mask) << loops->name;
+        ASSERT_EQ(removed[i], before[i] & ~mask) << loops->name;
+        ASSERT_EQ(once[i], before[i] | mask) << loops->name;
+        ASSERT_EQ(again[i], again_before[i] | (before[i] & mask)) << loops->name;
       }
       EXPECT_EQ(met, any_met) << loops->name;
     }

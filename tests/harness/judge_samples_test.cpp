@@ -25,13 +25,12 @@ namespace {
 void draw(judging::BitPlane& plane, Point2 a, Point2 b, double radius_mm,
           judging::BitPlane* again = nullptr) {
   const judging::SampleGrid& grid = plane.grid();
-  judging::Capsule(judging::Segment(grid.to_steps(a), grid.to_steps(b)), grid.to_steps(radius_mm))
-      .visit(grid.size(), [&](const judging::RowSpans& rows) {
-        if (again != nullptr)
-          plane.add_counting(rows, *again);
-        else
-          plane.add(rows);
-      });
+  const judging::Capsule capsule(judging::Segment(grid.to_steps(a), grid.to_steps(b)),
+                                 grid.to_steps(radius_mm));
+  if (again != nullptr)
+    plane.add_counting(capsule, *again);
+  else
+    plane.add(capsule);
 }
 
 TEST(JudgeSamples, PlanesHoldWhatIsDrawnOnceAndMore) {

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "judge/capsule.hpp"
 #include "judge/row_loops.hpp"
-#include "judge/row_spans.hpp"
 #include "judge/sample_grid.hpp"
 #include "judge/span.hpp"
 #include "routebench/geometry/types.hpp"
@@ -83,19 +83,28 @@ class BitPlane {
     });
   }
 
-  void add(const RowSpans& spans) {
-    row_loops().add(spans, words_.data(), grid_->rows());
-    use(spans);
+  /// Adds the samples that a capsule holds.
+  void add(const Capsule& capsule) {
+    capsule.visit(grid_->size(), [&](const CapsuleShape& shape, const GridPart& part) {
+      row_loops().add(shape, part, words_.data(), grid_->rows());
+      use(part);
+    });
   }
 
   /// Takes the samples away that `add` would add.
-  void remove(const RowSpans& spans) { row_loops().remove(spans, words_.data(), grid_->rows()); }
+  void remove(const Capsule& capsule) {
+    capsule.visit(grid_->size(), [&](const CapsuleShape& shape, const GridPart& part) {
+      row_loops().remove(shape, part, words_.data(), grid_->rows());
+    });
+  }
 
   /// Adds samples as `add` does; those that were there already are added to `again` as well.
-  void add_counting(const RowSpans& spans, BitPlane& again) {
-    if (row_loops().add_counting(spans, words_.data(), again.words_.data(), grid_->rows()))
-      again.use(spans);
-    use(spans);
+  void add_counting(const Capsule& capsule, BitPlane& again) {
+    capsule.visit(grid_->size(), [&](const CapsuleShape& shape, const GridPart& part) {
+      if (row_loops().add_counting(shape, part, words_.data(), again.words_.data(), grid_->rows()))
+        again.use(part);
+      use(part);
+    });
   }
 
   [[nodiscard]] std::size_t count() const { return count_in(nullptr, nullptr); }
@@ -121,9 +130,9 @@ class BitPlane {
     used_[strip].first = std::min(used_[strip].first, first);
     used_[strip].end = std::max(used_[strip].end, end);
   }
-  void use(const RowSpans& spans) {
-    for (std::size_t strip = spans.first_word; strip < spans.end_word; ++strip)
-      use(strip, spans.first_row, spans.first_row + spans.count);
+  void use(const GridPart& part) {
+    for (std::size_t strip = part.first_word; strip < part.end_word; ++strip)
+      use(strip, part.first_row, part.end_row);
   }
 
   /// Calls visit(strip, mask) for the columns from `left` to `right` that are on the grid.

@@ -36,16 +36,11 @@ void draw(Drawing& drawing, const Run& run, const Task& task) {
     Capsule bead(segment, grid.to_steps(width_mm / 2));
     // The bead before ends in the same disc.
     if (i > 0 && run.widths_mm[i - 1] == width_mm) bead.leave_start();
-    bead.visit(grid.size(), [&drawing](const RowSpans& rows) { drawing.beads.add(rows); });
+    drawing.beads.add(bead);
 
     Capsule pass(segment, grid.to_steps(task.mean_width_mm(width_mm) / 2));
-    const bool goes_on = i > 0 || run.loop;
-    if (goes_on) pass.leave_start();
-    pass.visit(grid.size(), [&](RowSpans& rows) {
-      // A sample on the rim of the disc belongs to it. Mostly one end of the row is on the rim.
-      if (goes_on) pass.cut_start(rows);
-      drawing.passed.add_counting(rows, drawing.passed_more);
-    });
+    if (i > 0 || run.loop) pass.cut_start();
+    drawing.passed.add_counting(pass, drawing.passed_more);
   }
 }
 
@@ -57,8 +52,8 @@ double spilled_samples(const LayerSamples& samples, const Demand& demand,
   double beyond_mm2 = 0;  // the samples, as length x width
   BitPlane beads(grid);
   for (const Bead& bead : strays) {
-    Capsule(Segment(grid.to_steps(bead.a), grid.to_steps(bead.b)), grid.to_steps(bead.width_mm / 2))
-        .visit(grid.size(), [&beads](const RowSpans& rows) { beads.add(rows); });
+    beads.add(Capsule(Segment(grid.to_steps(bead.a), grid.to_steps(bead.b)),
+                      grid.to_steps(bead.width_mm / 2)));
     const SampleGrid::Shares over = grid.shares_over(grid.to_steps(bead.a), grid.to_steps(bead.b));
     beyond_mm2 += (1 - (over.leave - over.enter)) * distance(bead.a, bead.b) * bead.width_mm;
   }

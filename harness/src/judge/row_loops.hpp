@@ -5,12 +5,14 @@
 #include <cstdint>
 #include <vector>
 
-#include "judge/row_spans.hpp"
-
 namespace routebench::judging {
 
-/// The boundary of a capsule: upwards each end of its rows runs along an arc of the lower disc, a
-/// straight side from height `begin` to height `end`, and an arc of the upper disc. In steps.
+/// Columns 64 w to 64 w + 63 of a row are bits of its word w, the first of them the lowest.
+inline constexpr std::size_t kWordBits = 64;
+
+/// All points within a radius of a segment: of each row one span. Upwards each of its ends runs
+/// along an arc of the lower disc, a straight side from height `begin` to height `end`, and an arc
+/// of the upper disc. In steps.
 struct CapsuleShape {
   struct Side {
     double begin = 0;
@@ -20,17 +22,22 @@ struct CapsuleShape {
   double low_y = 0;
   double high_x = 0;
   double high_y = 0;
-  double square = 0;      ///< of the radius
+  double radius = 0;
   double slope = 0;       ///< of the centre line: columns a row
   double half_width = 0;  ///< along a row, between the straight sides
   Side left;
   Side right;
+  bool begins_low = true;  ///< the segment's first point is the centre of the lower disc
+  bool is_cut = false;     ///< the disc round that point is left out
 };
 
-struct DiscShape {
-  double x = 0;  ///< of the centre
-  double y = 0;
-  double square = 0;  ///< of the radius
+/// Rows of a grid that a shape meets, and the words in which it does.
+struct GridPart {
+  std::size_t first_row = 0;
+  std::size_t end_row = 0;
+  std::size_t first_word = 0;
+  std::size_t end_word = 0;
+  std::size_t columns = 0;  ///< of the grid: what lies beyond is left out
 };
 
 /// A straight line: where it is at which height. In steps.
@@ -65,23 +72,16 @@ struct RowLoops {
 
   const char* name;
 
-  /// Sets left and end of rows [begin, end), which meet the capsule, on a grid of so many columns.
-  /// Spoils those of the room after them.
-  void (*rows)(const CapsuleShape& shape, std::size_t columns, std::size_t begin, std::size_t end,
-               RowSpans& spans);
-  /// The same for rows at which both ends are on straight sides.
-  void (*straight_rows)(const CapsuleShape& shape, std::size_t columns, std::size_t begin,
-                        std::size_t end, RowSpans& spans);
-  /// Cuts a disc out of rows [begin, end), nothing out of all others.
-  void (*cut_disc)(const DiscShape& disc, std::size_t begin, std::size_t end, RowSpans& spans);
-
-  /// Adds what spans hold to words of a grid of so many rows; see StripWords.
-  void (*add)(const RowSpans& spans, std::uint64_t* words, std::size_t rows);
+  /// Adds what a capsule holds of a part of a grid to the grid's words, of so many rows; see
+  /// StripWords.
+  void (*add)(const CapsuleShape& shape, const GridPart& part, std::uint64_t* words,
+              std::size_t rows);
   /// Takes it away.
-  void (*remove)(const RowSpans& spans, std::uint64_t* words, std::size_t rows);
+  void (*remove)(const CapsuleShape& shape, const GridPart& part, std::uint64_t* words,
+                 std::size_t rows);
   /// Adds it; what was there already is added to `again` as well. Returns whether anything was.
-  bool (*add_counting)(const RowSpans& spans, std::uint64_t* words, std::uint64_t* again,
-                       std::size_t rows);
+  bool (*add_counting)(const CapsuleShape& shape, const GridPart& part, std::uint64_t* words,
+                       std::uint64_t* again, std::size_t rows);
 
   /// Flips in rows [begin, end) the columns from a line on, as far as they are in the word that the
   /// line meets (the first one if it is left of the grid), if that is one of strips

@@ -34,7 +34,6 @@ using WordLanes = std::uint64_t __attribute__((vector_size(kLanes * 8)));
 using FloatLanes = float __attribute__((vector_size(kLanes * 8)));
 
 Lanes lanes_of(double number) { return Lanes{} + number; }
-WholeLanes bits_of(Lanes lanes) { return __builtin_bit_cast(WholeLanes, lanes); }
 WordLanes words_of(WholeLanes lanes) { return __builtin_bit_cast(WordLanes, lanes); }
 WholeLanes whole_of(WordLanes lanes) { return __builtin_bit_cast(WholeLanes, lanes); }
 Lanes lesser(Lanes a, Lanes b) { return a < b ? a : b; }
@@ -77,18 +76,33 @@ Lanes square_root(Lanes square) {
 #endif
 }
 
+#if defined(__AVX512F__)
+WholeLanes rounded_down(Lanes a) {
+  return __builtin_bit_cast(WholeLanes,
+                            _mm512_cvt_roundpd_epi64(a, _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC));
+}
+WholeLanes rounded_up(Lanes a) {
+  return __builtin_bit_cast(WholeLanes,
+                            _mm512_cvt_roundpd_epi64(a, _MM_FROUND_TO_POS_INF | _MM_FROUND_NO_EXC));
+}
+#else
 // Next to this number there are only whole ones: to add it rounds to the nearest, which is then the
 // sum's last digits. For numbers up to 2^50.
 constexpr double kOnlyWhole = 0x1.8p52;
 
+WholeLanes last_digits(Lanes raised) {
+  return __builtin_bit_cast(WholeLanes, raised) -
+         __builtin_bit_cast(WholeLanes, lanes_of(kOnlyWhole));
+}
 WholeLanes rounded_down(Lanes a) {
   const Lanes raised = a + kOnlyWhole;
-  return bits_of(raised) - bits_of(lanes_of(kOnlyWhole)) + (raised - kOnlyWhole > a);
+  return last_digits(raised) + (raised - kOnlyWhole > a);
 }
 WholeLanes rounded_up(Lanes a) {
   const Lanes raised = a + kOnlyWhole;
-  return bits_of(raised) - bits_of(lanes_of(kOnlyWhole)) - (raised - kOnlyWhole < a);
+  return last_digits(raised) - (raised - kOnlyWhole < a);
 }
+#endif
 
 /// 0, 1, 2 and so on.
 Lanes steps() {
@@ -98,134 +112,124 @@ Lanes steps() {
   return steps;
 }
 
-/// Heights of row `i` of the spans and those after it.
-Lanes heights(const RowSpans& spans, std::size_t i) {
-  return static_cast<double>(static_cast<std::int64_t>(spans.first_row + i)) + steps();
-}
-
-/// The columns of a grid from one place to another.
-void put(RowSpans& spans, std::size_t i, Lanes from, Lanes to, Lanes columns) {
-  const WholeLanes last = rounded_down(lesser(greater(to, lanes_of(-1)), columns - 1));
-  store(spans.left[i], words_of(rounded_up(lesser(greater(from, Lanes{}), columns))));
-  store(spans.end[i], words_of(last + 1));
-}
-
-Lanes centre_line(const CapsuleShape& shape, Lanes y) {
-  return shape.low_x + shape.slope * (y - shape.low_y);
-}
-
-void rows(const CapsuleShape& given, std::size_t columns, std::size_t begin, std::size_t end,
-          RowSpans& spans) {
-  const CapsuleShape shape = given;  // what is stored to spans does not change it
-  const Lanes column_count = lanes_of(static_cast<double>(static_cast<std::int64_t>(columns)));
-  const Lanes low_x = lanes_of(shape.low_x);
-  const Lanes low_y = lanes_of(shape.low_y);
-  const Lanes high_x = lanes_of(shape.high_x);
-  const Lanes high_y = lanes_of(shape.high_y);
-  Lanes y = heights(spans, begin);
-  for (std::size_t i = begin; i < end; i += kLanes, y += kLanes) {
-    const Lanes middle = centre_line(shape, y);
-    const WholeLanes left_is_low = y < shape.left.begin;
-    const WholeLanes right_is_low = y < shape.right.begin;
-    const Lanes left_rise = y - (left_is_low ? low_y : high_y);
-    const Lanes right_rise = y - (right_is_low ? low_y : high_y);
-    const Lanes left_arc =
-        (left_is_low ? low_x : high_x) - square_root(shape.square - left_rise * left_rise);
-    const Lanes right_arc =
-        (right_is_low ? low_x : high_x) + square_root(shape.square - right_rise * right_rise);
-    put(spans, i, (left_is_low | (y > shape.left.end)) ? left_arc : middle - shape.half_width,
-        (right_is_low | (y > shape.right.end)) ? right_arc : middle + shape.half_width,
-        column_count);
-  }
-}
-
-void straight_rows(const CapsuleShape& given, std::size_t columns, std::size_t begin,
-                   std::size_t end, RowSpans& spans) {
-  const CapsuleShape shape = given;
-  const Lanes column_count = lanes_of(static_cast<double>(static_cast<std::int64_t>(columns)));
-  Lanes y = heights(spans, begin);
-  for (std::size_t i = begin; i < end; i += kLanes, y += kLanes) {
-    const Lanes middle = centre_line(shape, y);
-    put(spans, i, middle - shape.half_width, middle + shape.half_width, column_count);
-  }
-}
-
-void cut_disc(const DiscShape& given, std::size_t begin, std::size_t end, RowSpans& spans) {
-  const DiscShape disc = given;
-  const Lanes furthest = lanes_of(0x1p40);
-  spans.is_cut = true;
-  for (std::size_t i = 0; i < spans.count; i += kLanes) {
-    store(spans.cut_left[i], WordLanes{});
-    store(spans.cut_end[i], WordLanes{});
-  }
-  Lanes y = heights(spans, begin);
-  for (std::size_t i = begin; i < end; i += kLanes, y += kLanes) {
-    const Lanes rise = y - disc.y;
-    const Lanes square = disc.square - rise * rise;
-    const Lanes half = square_root(square);
-    const WholeLanes left = rounded_up(lesser(greater(disc.x - half, -furthest), furthest));
-    const WholeLanes last = rounded_down(lesser(greater(disc.x + half, -furthest), furthest));
-    store(spans.cut_left[i], words_of(left));
-    store(spans.cut_end[i], words_of(square >= 0 ? last + 1 : left));
-  }
-}
-
 /// Of a column's number its place in a word.
 constexpr std::uint64_t kInWord = kWordBits - 1;
 
-/// Of words whose first column is `begin`, the columns before an end.
-WordLanes columns_before(WholeLanes end, std::int64_t begin) {
-  const WholeLanes count = end - begin;
-#if defined(__SSE2__) && !defined(__AVX2__)
-  // Neither shifts nor comparisons of this size are among what these do in vectors.
-  WordLanes columns{};
+/// All bits but the lowest `count`.
+WordLanes all_but(WholeLanes count) {
+#if defined(__AVX512F__)
+  const auto some = _mm512_max_epi64(__builtin_bit_cast(__m512i, count), __m512i{});
+  return __builtin_bit_cast(WordLanes, _mm512_sllv_epi64(_mm512_set1_epi64(-1), some));
+#elif defined(__AVX2__)
+  const auto some = __builtin_bit_cast(__m256i, count & (count > 0));
+  return __builtin_bit_cast(WordLanes, _mm256_sllv_epi64(_mm256_set1_epi64x(-1), some));
+#else
+  // Neither shifts nor comparisons of this size are among what SSE2 does in vectors.
+  WordLanes bits{};
   for (std::size_t lane = 0; lane < kLanes; ++lane) {
     const std::int64_t k = count[lane];
-    const std::uint64_t some = ~(~std::uint64_t{0} << (static_cast<std::uint64_t>(k) & kInWord));
-    const std::uint64_t up_to_all = k > 0 ? some : 0;
-    columns[lane] = k >= std::int64_t{kWordBits} ? ~std::uint64_t{0} : up_to_all;
+    const std::uint64_t some = ~std::uint64_t{0} << (static_cast<std::uint64_t>(k) & kInWord);
+    const std::uint64_t up_to_all = k > 0 ? some : ~std::uint64_t{0};
+    bits[lane] = k >= std::int64_t{kWordBits} ? 0 : up_to_all;
   }
-  return columns;
-#else
-  const WordLanes some = ~(~WordLanes{} << (words_of(count) & kInWord));
-  return (some & words_of(count > 0)) | words_of(count >= std::int64_t{kWordBits});
+  return bits;
 #endif
 }
 
-/// Calls visit(place of the first word, mask) for some rows at once of all that spans hold.
-template <typename Visit>
-void visit_spans(const RowSpans& spans, std::size_t rows, const Visit& visit) {
-  for (std::size_t word = spans.first_word; word < spans.end_word; ++word) {
-    const auto column = static_cast<std::int64_t>(word * kWordBits);
-    const std::size_t first = word * rows + spans.first_row;
-    const auto between = [column](const std::int64_t& left, const std::int64_t& end) {
-      return columns_before(whole_of(load(end)), column) &
-             ~columns_before(whole_of(load(left)), column);
+/// The columns of a grid from one place to another.
+struct Columns {
+  WholeLanes left{};
+  WholeLanes end{};
+
+  Columns() = default;
+  Columns(Lanes from, Lanes to, Lanes columns)
+      : left(rounded_up(lesser(greater(from, Lanes{}), columns))),
+        end(rounded_down(lesser(greater(to, lanes_of(-1)), columns - 1)) + 1) {}
+
+  /// Those in words whose first column is `begin`.
+  [[nodiscard]] WordLanes in_words(std::int64_t begin) const {
+    return all_but(left - begin) & ~all_but(end - begin);
+  }
+};
+
+double larger(double a, double b) { return a < b ? b : a; }
+
+/// Calls visit(place of the first word, mask) for some rows at once of all that a capsule holds.
+template <bool kCut, typename Visit>
+void visit_words(const CapsuleShape& given, const GridPart& given_part, std::size_t rows,
+                 const Visit& visit) {
+  const CapsuleShape shape = given;  // what is stored to words does not change it
+  const GridPart part = given_part;
+  const Lanes columns = lanes_of(static_cast<double>(static_cast<std::int64_t>(part.columns)));
+  const Lanes square = lanes_of(shape.radius * shape.radius);
+  const bool cuts_low = kCut && shape.begins_low;
+  const bool cuts_high = kCut && !shape.begins_low;
+  // Up to here rows may meet the lower disc, from there on the upper one: only these take roots.
+  double low_end = larger(shape.left.begin, shape.right.begin);
+  double high_begin = -larger(-shape.left.end, -shape.right.end);
+  // Where the disc ends is rounded: a row more, lest it depend on how many are taken at once.
+  if (cuts_low) low_end = larger(low_end, shape.low_y + shape.radius + 1);
+  if (cuts_high) high_begin = -larger(-high_begin, shape.radius + 1 - shape.high_y);
+  auto height = static_cast<double>(static_cast<std::int64_t>(part.first_row));
+  const Lanes end_height = lanes_of(static_cast<double>(static_cast<std::int64_t>(part.end_row)));
+  for (std::size_t row = part.first_row; row < part.end_row; row += kLanes, height += kLanes) {
+    const Lanes y = height + steps();
+    const Lanes middle = shape.low_x + shape.slope * (y - shape.low_y);
+    Lanes left = middle - shape.half_width;
+    Lanes right = middle + shape.half_width;
+    Columns cut;
+    const auto meet_disc = [&](double disc_x, double disc_y, WholeLanes is_left,
+                               WholeLanes is_right, bool cuts) {
+      const Lanes rise = y - disc_y;
+      const Lanes half_square = square - rise * rise;
+      const Lanes half = square_root(half_square);
+      const Lanes from = disc_x - half;
+      const Lanes to = disc_x + half;
+      left = is_left ? from : left;
+      right = is_right ? to : right;
+      if (!cuts) return;
+      cut = Columns(from, to, columns);
+      cut.end = half_square >= 0 ? cut.end : cut.left;
     };
-    if (spans.is_cut)
-      for (std::size_t i = 0; i < spans.count; i += kLanes)
-        visit(first + i,
-              between(spans.left[i], spans.end[i]) & ~between(spans.cut_left[i], spans.cut_end[i]));
-    else
-      for (std::size_t i = 0; i < spans.count; i += kLanes)
-        visit(first + i, between(spans.left[i], spans.end[i]));
+    if (height <= low_end)
+      meet_disc(shape.low_x, shape.low_y, y < shape.left.begin, y < shape.right.begin, cuts_low);
+    if (height + (kLanes - 1) >= high_begin)
+      meet_disc(shape.high_x, shape.high_y, y > shape.left.end, y > shape.right.end, cuts_high);
+    Columns held(left, right, columns);
+    held.end = y < end_height ? held.end : held.left;
+    for (std::size_t word = part.first_word; word < part.end_word; ++word) {
+      const auto column = static_cast<std::int64_t>(word * kWordBits);
+      WordLanes mask = held.in_words(column);
+      if constexpr (kCut) mask &= ~cut.in_words(column);
+      visit(word * rows + row, mask);
+    }
   }
 }
 
-void add(const RowSpans& spans, std::uint64_t* words, std::size_t rows) {
-  visit_spans(spans, rows,
+template <typename Visit>
+void visit_words(const CapsuleShape& shape, const GridPart& part, std::size_t rows,
+                 const Visit& visit) {
+  if (shape.is_cut)
+    visit_words<true>(shape, part, rows, visit);
+  else
+    visit_words<false>(shape, part, rows, visit);
+}
+
+void add(const CapsuleShape& shape, const GridPart& part, std::uint64_t* words, std::size_t rows) {
+  visit_words(shape, part, rows,
               [words](std::size_t i, WordLanes mask) { store(words[i], load(words[i]) | mask); });
 }
 
-void remove(const RowSpans& spans, std::uint64_t* words, std::size_t rows) {
-  visit_spans(spans, rows,
+void remove(const CapsuleShape& shape, const GridPart& part, std::uint64_t* words,
+            std::size_t rows) {
+  visit_words(shape, part, rows,
               [words](std::size_t i, WordLanes mask) { store(words[i], load(words[i]) & ~mask); });
 }
 
-bool add_counting(const RowSpans& spans, std::uint64_t* words, std::uint64_t* again,
-                  std::size_t rows) {
+bool add_counting(const CapsuleShape& shape, const GridPart& part, std::uint64_t* words,
+                  std::uint64_t* again, std::size_t rows) {
   WordLanes met{};
-  visit_spans(spans, rows, [words, again, &met](std::size_t i, WordLanes mask) {
+  visit_words(shape, part, rows, [words, again, &met](std::size_t i, WordLanes mask) {
     const WordLanes before = load(words[i]);
     const WordLanes both = before & mask;
     // Most samples are passed once: the other words are left alone.
@@ -270,6 +274,25 @@ void fill(std::uint64_t* words, std::uint64_t* carry, std::size_t rows) {
   }
 }
 
+#if defined(__AVX512VPOPCNTDQ__)
+/// Counts bits.
+class BitCounter {
+ public:
+  void add(WordLanes words) {
+    of_words_ +=
+        __builtin_bit_cast(WordLanes, _mm512_popcnt_epi64(__builtin_bit_cast(__m512i, words)));
+  }
+
+  [[nodiscard]] std::size_t count() const {
+    std::size_t set = 0;
+    for (std::size_t lane = 0; lane < kLanes; ++lane) set += of_words_[lane];
+    return set;
+  }
+
+ private:
+  WordLanes of_words_{};
+};
+#else
 /// Counts bits. Those of one word are counted by a call on plain processors: of some words together
 /// they are added up byte by byte.
 class BitCounter {
@@ -303,6 +326,7 @@ class BitCounter {
   WordLanes of_words_{};
   int added_ = 0;
 };
+#endif
 
 std::size_t count(const StripWords& plane, const std::uint64_t* with,
                   const std::uint64_t* without) {
@@ -343,9 +367,6 @@ void weighted_sum(const float* const* from, const float* weights, std::size_t te
 
 constexpr RowLoops kLoops{
     .name = kName,
-    .rows = rows,
-    .straight_rows = straight_rows,
-    .cut_disc = cut_disc,
     .add = add,
     .remove = remove,
     .add_counting = add_counting,

@@ -14,9 +14,7 @@ void SamplesLeft::remove_capsule(Point2 a, Point2 b, double radius) {
   if (!any_near({std::min(a.x, b.x), std::min(a.y, b.y)}, {std::max(a.x, b.x), std::max(a.y, b.y)},
                 radius))
     return;
-  Capsule(Segment(a, b), radius).visit(left_.grid().size(), [this](const RowSpans& rows) {
-    left_.remove(rows);
-  });
+  left_.remove(Capsule(Segment(a, b), radius));
 }
 
 void SamplesLeft::remove(Point2 a, Point2 b, double radius_mm) {
