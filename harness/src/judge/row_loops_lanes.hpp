@@ -90,18 +90,17 @@ WholeLanes rounded_up(Lanes a) {
 // sum's last digits. For numbers up to 2^50.
 constexpr double kOnlyWhole = 0x1.8p52;
 
-WholeLanes last_digits(Lanes raised) {
-  return __builtin_bit_cast(WholeLanes, raised) -
+WholeLanes nearest(Lanes a) {
+  return __builtin_bit_cast(WholeLanes, a + kOnlyWhole) -
          __builtin_bit_cast(WholeLanes, lanes_of(kOnlyWhole));
 }
-WholeLanes rounded_down(Lanes a) {
-  const Lanes raised = a + kOnlyWhole;
-  return last_digits(raised) + (raised - kOnlyWhole > a);
-}
-WholeLanes rounded_up(Lanes a) {
-  const Lanes raised = a + kOnlyWhole;
-  return last_digits(raised) - (raised - kOnlyWhole < a);
-}
+#if defined(__AVX2__)
+WholeLanes rounded_down(Lanes a) { return nearest(_mm256_floor_pd(a)); }
+WholeLanes rounded_up(Lanes a) { return nearest(_mm256_ceil_pd(a)); }
+#else
+WholeLanes rounded_down(Lanes a) { return nearest(a) + (a + kOnlyWhole - kOnlyWhole > a); }
+WholeLanes rounded_up(Lanes a) { return nearest(a) - (a + kOnlyWhole - kOnlyWhole < a); }
+#endif
 #endif
 
 /// 0, 1, 2 and so on.
