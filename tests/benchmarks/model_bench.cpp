@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <memory>
 #include <random>
 #include <span>
 #include <utility>
@@ -97,8 +98,8 @@ void count(benchmark::State& state, std::size_t bytes) {
   state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(bytes));
 }
 
-/// All bytes of a file, into memory that is there.
-void read_into(const std::string& path, std::string& bytes) {
+/// All bytes of a file, into memory for as many.
+void read_into(const std::string& path, std::span<char> bytes) {
   const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   const ssize_t length = ::read(file, bytes.data(), bytes.size());
   if (file < 0 || static_cast<std::size_t>(length) != bytes.size())
@@ -132,17 +133,28 @@ BENCHMARK(read_stl<Kind::kAscii>)->Name("read_ascii_stl")->Apply(over_sizes);
 BENCHMARK(read_stl<Kind::kBinary>)->Name("read_large_binary_stl")->Apply(two_million);
 BENCHMARK(read_stl<Kind::kAscii>)->Name("read_large_ascii_stl")->Apply(two_million);
 
-/// What the system takes to hand over the bytes of the same file.
+/// What the system takes to hand over the bytes of the same file: into memory that is there, or as
+/// to a program that has to ask for it.
 void copy_large_binary_stl(benchmark::State& state) {
   const SphereFile& file = sphere_file(state.range(0), Kind::kBinary);
-  std::string bytes(file.bytes(), '\0');
+  const auto memory = [&file] { return std::make_unique_for_overwrite<char[]>(file.bytes()); };
+  const bool asks = state.range(1) != 0;
+  auto bytes = memory();
   for (auto _ : state) {
-    read_into(file.path(), bytes);
-    benchmark::DoNotOptimize(bytes.data());
+    if (asks) {
+      bytes.reset();
+      bytes = memory();
+    }
+    read_into(file.path(), {bytes.get(), file.bytes()});
+    benchmark::DoNotOptimize(bytes.get());
   }
   count(state, file.bytes());
 }
-BENCHMARK(copy_large_binary_stl)->Arg(2'000'000)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(copy_large_binary_stl)
+    ->ArgNames({"triangles", "asks_for_memory"})
+    ->ArgsProduct({{2'000'000}, {0, 1}})
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
 
 /// What it takes to read the same text and count its lines.
 void scan_large_ascii_stl(benchmark::State& state) {
