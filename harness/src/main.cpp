@@ -35,6 +35,18 @@ const CLI::App& called(const CLI::App& app) {
   return commands.empty() ? app : *commands.front();
 }
 
+/// What to say about a KEY=VALUE that follows another one: options that take such take one each.
+std::string write_the_option_again(const std::string& word, const CLI::App& command) {
+  if (word.starts_with('-') || word.find('=') == std::string::npos) return "";
+  std::string hint;
+  for (const CLI::Option* option : command.get_options()) {
+    const std::string type = option->get_type_name();
+    if (option->count() > 0 && type.find('=') != std::string::npos)
+      hint += (hint.empty() ? "; write " : " or ") + option->get_name() + " before every " + type;
+  }
+  return hint;
+}
+
 std::string explain(const CLI::App& app, const CLI::ParseError& error) {
   const CLI::App& command = called(app);
   const std::vector<std::string> extras = command.remaining();
@@ -43,7 +55,9 @@ std::string explain(const CLI::App& app, const CLI::ParseError& error) {
     std::vector<std::string> known;
     for (const CLI::Option* option : command.get_options())
       for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
-    message = "'" + extras.front() + "' was not expected" + did_you_mean(extras.front(), known);
+    const std::string& word = extras.front();
+    message = "'" + word + "' was not expected" + did_you_mean(word, known) +
+              write_the_option_again(word, command);
   }
   return message + " (see routebench " + (&command == &app ? "" : command.get_name() + " ") +
          "--help)";

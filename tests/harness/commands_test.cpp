@@ -35,6 +35,8 @@ TEST_F(Program, HelpIsThereForEveryCommand) {
 TEST_F(Program, UnknownCommandsAndOptionsAreRefusedWithAHint) {
   expect_refused({"plann"}, "there is no command 'plann'; did you mean 'plan'?");
   expect_refused({}, "subcommand");
+  expect_refused({"plan", "shape:box", "--fill", "voxel", "--task", "density=1", "perimeters=1"},
+                 "'perimeters=1' was not expected; write --task before every KEY=VALUE");
   expect_refused({"slice", "shape:box", "--methd", "sweep"}, "did you mean '--method'?");
   expect_refused({"--frobnicate"}, "--frobnicate");
 }
