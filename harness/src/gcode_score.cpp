@@ -142,6 +142,17 @@ LayerPairs pair_layers(std::span<const Layer> model, std::span<const GcodeLayer>
   return pairs;
 }
 
+std::optional<std::string> misplaced_in_z(std::span<const Layer> model,
+                                          std::span<const GcodeLayer> file) {
+  if (model.empty() || file.empty()) return std::nullopt;
+  const double above_mm = file.front().z_mm - top_mm(model.front());
+  if (std::abs(above_mm) <= model.front().height_mm / 2 + kHeightToleranceMm) return std::nullopt;
+  const double shown_mm = std::round(std::abs(above_mm) * 1000) / 1000;
+  return "its lowest layer lies " + to_string(ParamValue(shown_mm)) +
+         (above_mm > 0 ? " mm above" : " mm below") +
+         " the model's; --z-offset takes a raft's height or the printer's own offset away";
+}
+
 Point2 offset_to_model(std::span<const Layer> model, std::span<const GcodeLayer> file,
                        const LayerPairs& pairs, double line_width_mm) {
   std::vector<double> x_mm, y_mm;

@@ -69,6 +69,7 @@ Json score_document(const ScoreResult& result) {
           {"reason", model ? Json(verdict.reason) : Json(nullptr)},
           {"layers", result.score.cell.layers.size()},
           {"offset_mm", model ? Json{offset.x, offset.y} : Json(nullptr)},
+          {"z_offset_mm", model ? Json(print.z_offset_mm) : Json(nullptr)},
           {"paired_layers", model ? Json(pairs.count(result.chosen)) : Json(nullptr)},
           {"missing_layers", model ? missing : Json(nullptr)},
           {"unpaired_z_mm", model ? unpaired_z : Json(nullptr)},

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <set>
+#include <sstream>
 
 #include "models.hpp"
 #include "program.hpp"
@@ -264,6 +265,7 @@ TEST_F(ScoreCommand, PrintsOneObjectWithTheMetricsOfPlan) {
                                                     "reason",
                                                     "layers",
                                                     "offset_mm",
+                                                    "z_offset_mm",
                                                     "paired_layers",
                                                     "missing_layers",
                                                     "unpaired_z_mm",
@@ -284,6 +286,29 @@ TEST_F(ScoreCommand, PrintsOneObjectWithTheMetricsOfPlan) {
   EXPECT_EQ(table.exit_code, 0);
   for (const char* part : {"outcome    valid\n", "offset     0, 0 mm\n", "Retractions of the file"})
     EXPECT_NE(table.out.find(part), std::string::npos) << table.out;
+}
+
+TEST_F(ScoreCommand, AnOffsetOfHeightsTakesARaftAway) {
+  planned("shape:box?size=12");
+  const json flat = score({"--model", "shape:box?size=12"}).json();
+  EXPECT_EQ(flat["z_offset_mm"], 0);
+  EXPECT_TRUE(flat["warnings"].empty()) << flat["warnings"];
+  std::istringstream lines(test::content_of(in_folder("a.gcode")));
+  std::string raised;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with("G1 Z")) line = "G1 Z" + std::to_string(std::stod(line.substr(4)) + 0.9);
+    raised += line + '\n';
+  }
+  write("a.gcode", raised);
+  const json misplaced = score({"--model", "shape:box?size=12"}).json();
+  EXPECT_EQ(misplaced["outcome"], "off_task");
+  EXPECT_NE(misplaced["warnings"].dump().find("its lowest layer lies 0.9 mm above the model's"),
+            std::string::npos)
+      << misplaced["warnings"];
+  const json taken_away = score({"--model", "shape:box?size=12", "--z-offset", "-0.9"}).json();
+  EXPECT_EQ(taken_away["z_offset_mm"], -0.9);
+  EXPECT_EQ(taken_away["totals"], flat["totals"]);
+  EXPECT_EQ(taken_away["warnings"], flat["warnings"]);
 }
 
 TEST_F(ScoreCommand, AnotherLayerHeightIsSaid) {
@@ -318,6 +343,9 @@ TEST_F(ScoreCommand, BadFilesAndBadUsageAreRefused) {
   expect_refused({"score"}, "FILE");
   expect_refused({"score", "/dev/null"}, "/dev/null: lays no material");
   expect_refused({"score", "/dev/null", "--offset", "1,2"}, "--offset means nothing without");
+  expect_refused({"score", "/dev/null", "--z-offset", "1"}, "--z-offset means nothing without");
+  expect_refused({"score", "/dev/null", "--model", "shape:box", "--z-offset", "nan"},
+                 "--z-offset: nan is no height");
   expect_refused({"score", "/dev/null", "--layers", "1"}, "--layers means nothing without");
   for (const char* offset : {"1", "1,", ",1", "1,2,3", "a,b", "1;2", "nan,0", "1e9,0"})
     expect_refused({"score", "/dev/null", "--model", "shape:box", "--offset", offset},

@@ -18,6 +18,8 @@
 namespace routebench {
 namespace {
 
+constexpr double kFurthestMm = 1e6;  // that G-code is moved
+
 KeyValue setting_of(const std::string& option, const std::string& text) {
   const std::size_t equals = text.find('=');
   if (equals == text.npos || equals == 0)
@@ -134,11 +136,22 @@ int tell_interrupted(const RunSummary& summary) {
   return kExitInterrupted;
 }
 
-void add_offset_option(CLI::App& command, std::string& offset) {
+void add_offset_options(CLI::App& command, GcodePlace& place) {
   command
-      .add_option("--offset", offset,
+      .add_option("--offset", place.offset,
                   "What to add to the G-code's places, in mm; else bounding boxes are aligned")
       ->type_name("X,Y");
+  command
+      .add_option("--z-offset", place.z_offset_mm,
+                  "What to add to its heights, in mm: -0.9 for what stands on a raft of 0.9 mm")
+      ->type_name("Z");
+}
+
+void refuse_offsets_without(const std::string& needed, const GcodePlace& place) {
+  for (const auto& [option, given] : {std::pair{"--offset", !place.offset.empty()},
+                                      std::pair{"--z-offset", place.z_offset_mm.has_value()}})
+    if (given)
+      throw Error(ErrorKind::kBadUsage, std::string(option) + " means nothing without " + needed);
 }
 
 void add_repair_flag(CLI::App& command, bool& repair) {
@@ -266,6 +279,14 @@ std::string readable(double value) {
   return text.data();
 }
 
+double z_offset_of(const GcodePlace& place) {
+  const double z_mm = place.z_offset_mm.value_or(0);
+  if (!(std::abs(z_mm) <= kFurthestMm))
+    throw Error(ErrorKind::kBadUsage,
+                "--z-offset: " + readable(z_mm) + " is no height; write mm, such as -0.9");
+  return z_mm;
+}
+
 std::optional<Point2> offset_of(const std::string& text) {
   if (text.empty()) return std::nullopt;
   std::array<double, 2> numbers{};
@@ -273,7 +294,6 @@ std::optional<Point2> offset_of(const std::string& text) {
   const char* const end = text.data() + text.size();
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     const auto [stop, failure] = std::from_chars(at, end, numbers[i]);
-    constexpr double kFurthestMm = 1e6;
     const bool last = i + 1 == numbers.size();
     if (failure != std::errc{} || !(std::abs(numbers[i]) <= kFurthestMm) ||
         (last ? stop != end : stop == end || *stop != ','))

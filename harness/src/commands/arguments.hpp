@@ -47,10 +47,20 @@ void add_cell_jobs_option(CLI::App& command, std::optional<int>& jobs);
 /// The folder or database that a command reads.
 void add_results_argument(CLI::App& command, std::string& results);
 void add_repair_flag(CLI::App& command, bool& repair);
-void add_offset_option(CLI::App& command, std::string& offset);
+/// How a file of G-code is moved onto the model.
+struct GcodePlace {
+  std::string offset;  ///< see offset_of
+  std::optional<double> z_offset_mm;
+};
+void add_offset_options(CLI::App& command, GcodePlace& place);
+/// Throws Error{kBadUsage} for such an option that was given without `needed`.
+void refuse_offsets_without(const std::string& needed, const GcodePlace& place);
 
 /// "12.5,-3" as a point on the grid; nothing of an empty text. Throws Error{kBadUsage} for another.
 [[nodiscard]] std::optional<Point2> offset_of(const std::string& text);
+
+/// 0 if none is given. Throws Error{kBadUsage} for what is no height.
+[[nodiscard]] double z_offset_of(const GcodePlace& place);
 
 /// How an experiment tells on the standard error how far it is.
 void add_progress_option(CLI::App& command, std::string& form);

@@ -32,7 +32,7 @@ struct PlanArguments {
   std::string shell;
   std::string fill;
   std::string from_gcode;
-  std::string offset;
+  GcodePlace place;
   std::string order = "island";
   std::vector<std::string> set;
   std::vector<std::string> task;
@@ -69,8 +69,7 @@ using StrokeSource = std::variant<Contender, GcodePrint>;
 StrokeSource source_of(const PlanArguments& arguments, const Registry& registry,
                        const Judge& judge) {
   if (arguments.from_gcode.empty()) {
-    if (!arguments.offset.empty())
-      throw Error(ErrorKind::kBadUsage, "--offset means nothing without --from-gcode FILE");
+    refuse_offsets_without("--from-gcode FILE", arguments.place);
     return Contender(contender_of(arguments, registry), registry);
   }
   for (const auto& [option, given] :
@@ -81,7 +80,8 @@ StrokeSource source_of(const PlanArguments& arguments, const Registry& registry,
                                             ": the strokes come --from-gcode, so there is no "
                                             "planner; give either");
   return read_gcode_file(arguments.from_gcode, {.layer_height_mm = judge.task().layer_height_mm,
-                                                .filament_mm = judge.printer().filament_mm});
+                                                .filament_mm = judge.printer().filament_mm,
+                                                .z_offset_mm = z_offset_of(arguments.place)});
 }
 
 /// One call of `routebench plan`, from its arguments to its outputs.
@@ -92,7 +92,7 @@ class Plan {
         judge_(task_of(arguments.task), printer_of(arguments.printer)),
         planners_(load_planners(arguments.plugins)),
         parallel_for_(parallel_loop(arguments.jobs)),
-        offset_(offset_of(arguments.offset)) {
+        offset_(offset_of(arguments.place.offset)) {
     keep_freed_memory();
     require_all_loaded(planners_);
     print_refused(planners_);
@@ -133,6 +133,8 @@ class Plan {
       planned_ = placed_->layers;
       for (const PlannedLayer& layer : planned_) routes_.push_back(&layer);
       print_warnings(arguments_.from_gcode, print->warnings);
+      if (const auto warning = misplaced_in_z(model_.sliced.layers, print->layers))
+        print_warnings(arguments_.from_gcode, {*warning});
       return true;
     }
     Outcome outcome = Outcome::kFailed;
@@ -263,7 +265,7 @@ void add_plan_command(CLI::App& app, int& exit_code) {
       .add_option("--from-gcode", arguments->from_gcode,
                   "Take the strokes of a file, of any slicer, in the place of planners")
       ->type_name("FILE");
-  add_offset_option(command, arguments->offset);
+  add_offset_options(command, arguments->place);
   add_repeated(command, "--set", arguments->set, "SLOT.KEY=VALUE",
                "A planner's parameter, such as fill.angle_deg=30 (see routebench planners NAME)");
   command

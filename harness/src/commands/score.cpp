@@ -22,7 +22,7 @@ namespace {
 struct ScoreArguments {
   std::string file;
   std::string model;
-  std::string offset;
+  GcodePlace place;
   std::vector<std::string> task;
   std::vector<std::string> printer;
   std::string layers;
@@ -39,8 +39,8 @@ class ScoreFile {
         judge_(task_of(arguments.task), printer_of(arguments.printer)),
         parallel_for_(parallel_loop(arguments.jobs)) {
     if (!arguments.model.empty()) return;
-    for (const auto& [option, given] : {std::pair{"--offset", !arguments.offset.empty()},
-                                        std::pair{"--layers", !arguments.layers.empty()},
+    refuse_offsets_without("--model MODEL", arguments.place);
+    for (const auto& [option, given] : {std::pair{"--layers", !arguments.layers.empty()},
                                         std::pair{"--repair", arguments.repair}})
       if (given)
         throw Error(ErrorKind::kBadUsage,
@@ -49,9 +49,10 @@ class ScoreFile {
 
   /// Returns the exit code.
   int run() {
-    const std::optional<Point2> offset = offset_of(arguments_.offset);
+    const std::optional<Point2> offset = offset_of(arguments_.place.offset);
     print_ = read_gcode_file(arguments_.file, {.layer_height_mm = judge_.task().layer_height_mm,
-                                               .filament_mm = judge_.printer().filament_mm});
+                                               .filament_mm = judge_.printer().filament_mm,
+                                               .z_offset_mm = z_offset_of(arguments_.place)});
     if (arguments_.model.empty()) {
       score_ = score_gcode(judge_, print_, parallel_for_);
     } else {
@@ -60,6 +61,8 @@ class ScoreFile {
       print_warnings(arguments_.model, model_->sliced.warnings);
       chosen_ = select_layers(arguments_.layers, model_->sliced.layers);
       score_ = score_gcode(judge_, *model_, chosen_, print_, offset, parallel_for_);
+      if (const auto warning = misplaced_in_z(model_->sliced.layers, print_.layers))
+        print_.warnings.push_back(*warning);
     }
     warn();
     print_warnings(arguments_.file, print_.warnings);
@@ -149,7 +152,7 @@ void add_score_command(CLI::App& app, int& exit_code) {
                   "What the file should print, as for plan; without it only what needs no model is "
                   "measured")
       ->type_name("MODEL");
-  add_offset_option(command, arguments->offset);
+  add_offset_options(command, arguments->place);
   add_task_option(command, arguments->task);
   add_printer_option(command, arguments->printer);
   command

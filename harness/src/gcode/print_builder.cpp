@@ -246,6 +246,8 @@ GcodePrint PrintBuilder::finish(const Place& end) {
                     (print_.excluded_strokes > 0 ? " that is part of a model" : ""));
   std::stable_sort(layers_.begin(), layers_.end(),
                    [](const RawLayer& a, const RawLayer& b) { return a.z_mm < b.z_mm; });
+  print_.z_offset_mm = options_.z_offset_mm;
+  for (RawLayer& layer : layers_) layer.z_mm += options_.z_offset_mm;
   set_heights();
   for (RawLayer& layer : layers_) {
     set_widths(layer, end);

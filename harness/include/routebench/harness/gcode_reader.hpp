@@ -20,6 +20,8 @@ struct GcodeOptions {
       0.2;                    ///< of layers whose height neither a mark nor the layer below tells
   double filament_mm = 1.75;  ///< diameter, unless the file states its own
   double arc_tolerance_mm = 0.001;  ///< how far the chords of an arc may stray from it
+  /// What is added to all heights: what the printer's own offset or a raft put before them.
+  double z_offset_mm = 0;
 };
 
 /// The material that lies at one height.
@@ -34,6 +36,7 @@ struct GcodeLayer {
 /// What a file of G-code prints.
 struct GcodePrint {
   std::vector<GcodeLayer> layers;  ///< lowest first; at least one; none without a stroke
+  double z_offset_mm = 0;          ///< that was added to heights
 
   // Of the strokes that are in `layers`, from the first to the last, as the file has them:
   std::size_t retractions = 0;  ///< times that filament was pulled back before a stroke

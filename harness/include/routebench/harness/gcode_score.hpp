@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "routebench/geometry/parallel.hpp"
@@ -38,6 +39,11 @@ struct LayerPairs {
 /// has material in both.
 [[nodiscard]] Point2 offset_to_model(std::span<const Layer> model, std::span<const GcodeLayer> file,
                                      const LayerPairs& pairs, double line_width_mm);
+
+/// Says in one line how far above or below a model's lowest layer that of a file lies; nothing if
+/// they pair. Takes the layers of both, ascending.
+[[nodiscard]] std::optional<std::string> misplaced_in_z(std::span<const Layer> model,
+                                                        std::span<const GcodeLayer> file);
 
 /// A file's strokes as the routes of a model's layers: what a contender's planners would have
 /// returned.
