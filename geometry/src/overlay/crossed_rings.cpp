@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "overlay/apart_rings.hpp"
+
 namespace routebench::overlay {
 namespace {
 
@@ -14,8 +16,6 @@ namespace {
 constexpr std::int32_t kApart = 4;
 /// The area of a ring that is less than so many units wide may be what rounding makes of it.
 constexpr double kSliver = 4;
-/// For the rings that lie about others.
-constexpr std::size_t kStepsPerPoint = 32;
 
 }  // namespace
 
