@@ -36,18 +36,23 @@ Json layer_document(const Layer& layer) {
 
 Json plan_document(const PlanResult& result) {
   const JudgedCell* const cell = result.cell;
-  return {{"model", result.model.spec},
-          {"contender", result.contender},
-          {"task", json_of(result.judge.task())},
-          {"printer", json_of(result.judge.printer())},
-          {"seed", result.seed ? Json(*result.seed) : Json(nullptr)},
-          {"outcome", cell ? Json(to_string(cell->verdict.outcome)) : Json(nullptr)},
-          {"reason", cell ? Json(cell->verdict.reason) : Json(nullptr)},
-          {"layers", result.layers},
-          {"totals", cell ? json_of(cell->totals) : Json(nullptr)},
-          {"per_layer", cell ? layer_documents(cell->layers) : Json(nullptr)},
-          {"mesh", mesh_of(result.model)},
-          {"warnings", result.model.warnings}};
+  Json document = {{"model", result.model.spec},
+                   {"contender", result.contender},
+                   {"task", json_of(result.judge.task())},
+                   {"printer", json_of(result.judge.printer())},
+                   {"seed", result.seed ? Json(*result.seed) : Json(nullptr)},
+                   {"outcome", cell ? Json(to_string(cell->verdict.outcome)) : Json(nullptr)},
+                   {"reason", cell ? Json(cell->verdict.reason) : Json(nullptr)},
+                   {"layers", result.layers},
+                   {"totals", cell ? json_of(cell->totals) : Json(nullptr)},
+                   {"per_layer", cell ? layer_documents(cell->layers) : Json(nullptr)},
+                   {"mesh", mesh_of(result.model)},
+                   {"warnings", result.model.warnings}};
+  if (const PlanPhases* const cpu = result.cpu)
+    document["cpu_ns"] = {{"prepare", cpu->prepare_ns},
+                          {"plan", cpu->plan_ns},
+                          {"judge", cpu->judge_ns ? Json(*cpu->judge_ns) : Json(nullptr)}};
+  return document;
 }
 
 Json score_document(const ScoreResult& result) {

@@ -2,6 +2,7 @@
 /// The JSON documents that commands print.
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -16,6 +17,13 @@
 namespace routebench {
 
 /// What `plan` has done, for its document.
+/// CPU time of the program's own threads: programs that plan are not among them.
+struct PlanPhases {
+  std::int64_t prepare_ns = 0;           ///< read, slice, find what every layer demands
+  std::int64_t plan_ns = 0;              ///< or put a file's strokes in their places
+  std::optional<std::int64_t> judge_ns;  ///< nothing: not judged
+};
+
 struct PlanResult {
   Json contender;
   const SlicedModel& model;
@@ -23,6 +31,7 @@ struct PlanResult {
   std::optional<std::uint64_t> seed;  ///< nothing if nobody has drawn lots
   std::size_t layers;                 ///< that were to be planned
   const JudgedCell* cell;             ///< nullptr: not judged
+  const PlanPhases* cpu;              ///< nullptr: not asked for
 };
 /// What is not judged has neither outcome nor scores: they are null.
 [[nodiscard]] Json plan_document(const PlanResult& result);

@@ -11,9 +11,9 @@
 namespace routebench {
 namespace {
 
-std::int64_t thread_cpu_ns() {
+std::int64_t now_ns(clockid_t clock) {
   std::timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  clock_gettime(clock, &now);
   return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
 }
 
@@ -21,11 +21,11 @@ std::int64_t thread_cpu_ns() {
 
 void add_time_of(const std::function<void()>& work, PlanTime& time) {
   using Clock = std::chrono::steady_clock;
-  const std::int64_t cpu_begin = thread_cpu_ns();
+  const std::int64_t cpu_begin = now_ns(CLOCK_THREAD_CPUTIME_ID);
   const Clock::time_point begin = Clock::now();
   work();
   const Clock::time_point end = Clock::now();
-  time.cpu_ns += thread_cpu_ns() - cpu_begin;
+  time.cpu_ns += now_ns(CLOCK_THREAD_CPUTIME_ID) - cpu_begin;
   time.wall_ns += std::chrono::duration_cast<std::chrono::nanoseconds>(end - begin).count();
 }
 
@@ -37,6 +37,8 @@ Route timed_plan(const Planner& planner, const Layer& layer, const PlanContext& 
   add_time_of([&] { route = planner.plan(layer, context); }, time);
   return route;
 }
+
+std::int64_t process_cpu_ns() { return now_ns(CLOCK_PROCESS_CPUTIME_ID); }
 
 double peak_rss_bytes(const Planner* planner) {
   rusage usage{};

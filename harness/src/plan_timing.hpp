@@ -1,6 +1,7 @@
 #pragma once
 /// How long plan() takes.
 
+#include <cstdint>
 #include <functional>
 
 #include "routebench/harness/contender.hpp"
@@ -14,6 +15,9 @@ void add_time_of(const std::function<void()>& work, PlanTime& time);
 /// program of its own is timed as ProcessPlanner says.
 [[nodiscard]] Route timed_plan(const Planner& planner, const Layer& layer,
                                const PlanContext& context, PlanTime& time);
+
+/// What all threads of this process have taken so far.
+[[nodiscard]] std::int64_t process_cpu_ns();
 
 /// The most memory that planning has taken so far: of this process, or of the planner's own if that
 /// took more.

@@ -37,6 +37,20 @@ class PlanCommand : public test::ProgramTest {
 
 constexpr const char* kModel = "shape:box?size=12";
 
+TEST_F(PlanCommand, TellsItsPhasesIfAsked) {
+  const json document = plan(kModel, {"--json", "-", "--phases"}).json();
+  const json& cpu = document["cpu_ns"];
+  EXPECT_EQ(keys_of(cpu), (std::set<std::string>{"prepare", "plan", "judge"}));
+  for (const char* phase : {"prepare", "plan", "judge"}) EXPECT_GT(cpu[phase], 0) << phase;
+  EXPECT_GE(cpu["plan"], document["totals"]["plan_cpu_ns"]) << "plan() is a part of it";
+  const std::string table = plan(kModel, {"--phases", "--no-judge"}).out;
+  EXPECT_NE(table.find("CPU of planning"), std::string::npos) << table;
+  EXPECT_EQ(table.find("CPU of judging"), std::string::npos) << table;
+  EXPECT_EQ(plan(kModel, {"--no-judge"}).out.find("CPU of"), std::string::npos);
+  EXPECT_TRUE(
+      plan(kModel, {"--json", "-", "--phases", "--no-judge"}).json()["cpu_ns"]["judge"].is_null());
+}
+
 TEST_F(PlanCommand, PrintsOneObjectWithExactlyTheMetricsOfTheTable) {
   const ProgramRun run = plan(kModel, {"--json", "-"});
   ASSERT_EQ(run.exit_code, 0) << run.err;

@@ -14,6 +14,7 @@
 #include "json_documents.hpp"
 #include "kept_memory.hpp"
 #include "layer_selection.hpp"
+#include "plan_timing.hpp"
 #include "planner_process.hpp"
 #include "routebench/geometry/error.hpp"
 #include "routebench/harness/commands.hpp"
@@ -46,6 +47,7 @@ struct PlanArguments {
   int jobs = 0;
   bool repair = false;
   bool no_judge = false;
+  bool phases = false;
 };
 
 ContenderSpec contender_of(const PlanArguments& arguments, const Registry& registry) {
@@ -102,12 +104,20 @@ class Plan {
 
   /// Returns the exit code.
   int run() {
+    const std::int64_t begin_ns = process_cpu_ns();
     model_ = prepare_model(arguments_.model, judge_.task(), {.repair = arguments_.repair},
                            parallel_for_);
     print_warnings(arguments_.model, model_.sliced.warnings);
     chosen_ = select_layers(arguments_.layers, model_.sliced.layers);
+    const std::int64_t prepared_ns = process_cpu_ns();
+    cpu_.prepare_ns = prepared_ns - begin_ns;
     const bool planned = plan();
-    if (planned && !arguments_.no_judge) judge();
+    const std::int64_t planned_ns = process_cpu_ns();
+    cpu_.plan_ns = planned_ns - prepared_ns;
+    if (planned && !arguments_.no_judge) {
+      judge();
+      cpu_.judge_ns = process_cpu_ns() - planned_ns;
+    }
     OutputSet outputs;
     if (planned && !arguments_.gcode.empty()) add_gcode(outputs);
     if (planned && !arguments_.svg.empty()) add_pictures(outputs);
@@ -190,7 +200,7 @@ class Plan {
     const bool planned = std::holds_alternative<Contender>(*source_);
     return plan_document({source(), model_.sliced, judge_,
                           planned ? std::optional(arguments_.seed) : std::nullopt, chosen_.size(),
-                          cell_ ? &*cell_ : nullptr});
+                          cell_ ? &*cell_ : nullptr, arguments_.phases ? &cpu_ : nullptr});
   }
 
   void add_gcode(OutputSet& outputs) const {
@@ -228,15 +238,22 @@ class Plan {
     else
       out << "\nstrokes    of " << arguments_.from_gcode;
     out << "\noutcome    " << (cell_ ? to_string(cell_->verdict.outcome) : "planned, not judged");
-    if (!cell_) {
-      out << '\n';
-      return;
-    }
-    if (!cell_->verdict.reason.empty()) out << ": " << cell_->verdict.reason;
+    if (cell_ && !cell_->verdict.reason.empty()) out << ": " << cell_->verdict.reason;
     out << '\n';
-    const std::vector<Row> rows = rows_of(cell_->totals);
+    std::vector<Row> rows;
+    if (cell_) rows = rows_of(cell_->totals);
+    if (arguments_.phases) append_phases(rows);
     if (!rows.empty()) out << '\n';
     print_rows(out, rows);
+  }
+
+  void append_phases(std::vector<Row>& rows) const {
+    const auto append = [&rows](const char* label, std::int64_t cpu_ns) {
+      rows.push_back({label, std::to_string(cpu_ns), "ns"});
+    };
+    append("CPU of reading and slicing", cpu_.prepare_ns);
+    append("CPU of planning", cpu_.plan_ns);
+    if (cpu_.judge_ns) append("CPU of judging", *cpu_.judge_ns);
   }
 
   const PlanArguments& arguments_;
@@ -251,6 +268,7 @@ class Plan {
   std::vector<PlannedLayer> planned_;
   std::vector<const PlannedLayer*> routes_;  // of the chosen layers, among planned_
   std::optional<JudgedCell> cell_;           // nothing if it is not to be judged
+  PlanPhases cpu_;
 };
 
 }  // namespace
@@ -289,6 +307,8 @@ void add_plan_command(CLI::App& app, int& exit_code) {
   command.add_flag("--no-judge", arguments->no_judge,
                    "Only plan and write: no outcome and no scores, so the exit code tells nothing "
                    "of the routes' worth");
+  command.add_flag("--phases", arguments->phases,
+                   "Tell how much CPU reading and slicing, planning and judging took");
   add_plugin_option(command, arguments->plugins);
   add_jobs_option(command, arguments->jobs,
                   "; planning times by the clock on the wall are to be trusted with 1 only");
