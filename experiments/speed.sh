@@ -12,7 +12,9 @@ models=${ROUTEBENCH_MODELS:-../shared/models}
   exit 2
 }
 experiments/build.sh release routebench_program
+experiments/build.sh bench routebench_bench
 before=()
 [ -z "${ROUTEBENCH_BEFORE:-}" ] || before=(--before "$ROUTEBENCH_BEFORE")
 exec /usr/bin/python3 experiments/speed_report.py build/release/bin/routebench \
-  --models "$models" --out results/reference/speed "${before[@]}" "$@"
+  --models "$models" --out results/reference/speed --bench build/bench/bin/routebench-bench \
+  "${before[@]}" "$@"

@@ -2,19 +2,22 @@
 """Measures the whole job, model to G-code, beside the slicers that are installed, and writes a page.
 
     experiments/speed_report.py PROGRAM --models DIR --out DIR [--only NAME,...] [--repetitions N]
-                                [--cores 2,1] [--before PROGRAM]
+                                [--cores 2,1] [--bench PROGRAM] [--before PROGRAM]
 
 One process at a time, all contenders of a model in random order, again in every repetition; each is
 bound to the given number of cores. Wall time, CPU time and peak memory are those of the process and
-its children as the kernel counts them; the page shows medians. With --before, an older build of the
-program, and valgrind installed, it also tells how many instructions named functions take before and
-after: that does not depend on what else the machine does.
+its children as the kernel counts them; the page shows medians. What judging costs beside planning
+is told by the program itself, for every layer. With --bench, a routebench-bench, parts of the job
+stand beside what bounds them. With --before, an older build of the program, and valgrind installed,
+it also tells how many instructions named functions take before and after: that does not depend on
+what else the machine does.
 """
 
 from __future__ import annotations
 
 import argparse
 import csv
+import json
 import os
 import platform
 import random
@@ -28,6 +31,8 @@ import time
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
+import speed_parts
+
 TASK = {"layer_height_mm": 0.2, "line_width_mm": 0.45, "perimeters": 2, "density": 0.2,
         "skin_layers": 3}
 SPACING_MM = 0.45 - 0.2 * (1 - 3.141592653589793 / 4)
@@ -38,6 +43,7 @@ OURS = "routebench"
 # How many times faster we are to be, and the share of the other's memory that we may take.
 TARGETS = {"PrusaSlicer": (15.0, 0.5), "Slic3r": (15.0, None), "CuraEngine": (8.0, 1.0)}
 MANY_CONTOURS_TARGET = 50.0  # times faster than PrusaSlicer
+JUDGING_TARGET = 1.0  # times what reading, slicing and planning take
 # Centre lines ask CGAL for exact predicates, which round in directions that valgrind cannot.
 PROFILED = ["organic/armadillo.stl?size=40", "thin/hex_grate.stl?size=40"]
 PROFILE_SETTINGS = ["--set", "shell.gaps=leave", "--set", "fill.thin=drop"]
@@ -61,6 +67,15 @@ class Run:
     cpu_s: float
     peak_mb: float
     gcode_bytes: int
+
+
+@dataclass
+class Phases:
+    """CPU time of one execution on one core, every layer planned and judged."""
+
+    model: str
+    planning_s: float  # with reading and slicing
+    judging_s: float
 
 
 def ini(prusa: bool) -> str:
@@ -125,11 +140,14 @@ def cura_definitions() -> Path | None:
     return None
 
 
+def task_options() -> list[str]:
+    return [word for key, value in TASK.items() for word in ("--task", f"{key}={value}")]
+
+
 def contenders(program: Path, scratch: Path) -> tuple[dict[str, list[str]], list[str]]:
     """Command lines with MODEL, OUT and CORES to be filled in, and what is missing."""
-    task = [word for key, value in TASK.items() for word in ("--task", f"{key}={value}")]
-    found = {OURS: [str(program), "plan", "MODEL", *PLANNERS, *task, "--no-judge", "--gcode",
-                    "OUT", "--jobs", "CORES"]}
+    found = {OURS: [str(program), "plan", "MODEL", *PLANNERS, *task_options(), "--no-judge",
+                    "--gcode", "OUT", "--jobs", "CORES"]}
     missing: list[str] = []
     for name, command in (("PrusaSlicer", "prusa-slicer"), ("Slic3r", "slic3r")):
         if shutil.which(command) is None:
@@ -192,6 +210,23 @@ def measure(model: Path, commands: dict[str, list[str]], cores: list[int], repet
     return runs
 
 
+def measure_phases(program: Path, model: Path, repetitions: int) -> list[Phases]:
+    usable = os.sched_getaffinity(0)
+    os.sched_setaffinity(0, sorted(usable)[:1])
+    command = [str(program), "plan", str(model), *PLANNERS, *task_options(), "--jobs", "1",
+               "--phases", "--json", "-"]
+    phases: list[Phases] = []
+    for _ in range(repetitions):
+        done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
+                              check=False, encoding="utf-8")
+        if done.returncode in (0, 1):
+            cpu_ns = json.loads(done.stdout)["cpu_ns"]
+            phases.append(Phases(model.stem, (cpu_ns["prepare"] + cpu_ns["plan"]) / 1e9,
+                                 cpu_ns["judge"] / 1e9))
+    os.sched_setaffinity(0, usable)
+    return phases
+
+
 def write_page(folder: Path, runs: list[Run], text: str) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     with (folder / "runs.csv").open("w", encoding="utf-8", newline="") as file:
@@ -205,9 +240,8 @@ def write_page(folder: Path, runs: list[Run], text: str) -> None:
 def instructions(program: Path, model: str, scratch: Path, judged: bool) -> dict[str, float] | None:
     """Instructions of the profiled functions with all that they call."""
     file = scratch / "callgrind.out"
-    task = [word for key, value in TASK.items() for word in ("--task", f"{key}={value}")]
     command = ["valgrind", "--tool=callgrind", f"--callgrind-out-file={file}", str(program), "plan",
-               model, *PLANNERS, *PROFILE_SETTINGS, *task, "--jobs", "1", "--gcode",
+               model, *PLANNERS, *PROFILE_SETTINGS, *task_options(), "--jobs", "1", "--gcode",
                str(scratch / "out.gcode")] + ([] if judged else ["--no-judge"])
     if subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
                       check=False).returncode not in (0, 1):
@@ -236,7 +270,22 @@ def median_runs(runs: list[Run]) -> dict[tuple[str, str, int], Run]:
             for key, group in groups.items()}
 
 
-def page(runs: list[Run], missing: list[str], cores: list[int], repetitions: int,
+def judging_table(phases: list[Phases]) -> list[str]:
+    lines = ["| model | reading, slicing, planning: CPU s | judging: CPU s | judging takes "
+             "| at most | met |", "|---|---|---|---|---|---|"]
+    for model in sorted({phase.model for phase in phases}):
+        of_model = [phase for phase in phases if phase.model == model]
+        ratio = statistics.median(phase.judging_s / phase.planning_s for phase in of_model)
+        lines.append(f"| {model} "
+                     f"| {statistics.median(phase.planning_s for phase in of_model):.3f} "
+                     f"| {statistics.median(phase.judging_s for phase in of_model):.3f} "
+                     f"| {ratio:.2f} x | {JUDGING_TARGET:g} x "
+                     f"| {speed_parts.said(ratio <= JUDGING_TARGET)} |")
+    return lines
+
+
+def page(runs: list[Run], phases: list[Phases], parts: dict[str, speed_parts.Measured],
+         missing: list[str], cores: list[int], repetitions: int,
          profiles: list[tuple[str, dict[str, float], dict[str, float]]], load: float,
          commit: str) -> str:
     medians = median_runs(runs)
@@ -277,6 +326,14 @@ def page(runs: list[Run], missing: list[str], cores: list[int], repetitions: int
                 target = f"{faster:g} x" + (f", memory {memory:g} x" if memory else "")
                 lines.append(row + f"| {ratio:.1f} x | {run.cpu_s / ours.cpu_s:.1f} x "
                                    f"| {target} | {met} |")
+    if phases:
+        lines += ["", "## Judging beside planning", "",
+                  "On one core, as `plan --phases` tells it: every layer is planned and judged, "
+                  "equal ones, too.", "", *judging_table(phases)]
+    if parts:
+        lines += ["", "## Parts of the job", "",
+                  "Measured by `routebench-bench` beside what cannot be avoided, in one run; wall "
+                  "times, medians.", "", *speed_parts.table(parts)]
     if profiles:
         lines += ["", "## Instructions before and after", "",
                   "Counted by callgrind on one thread, with all that the functions call; without "
@@ -310,6 +367,7 @@ def main() -> None:
     parser.add_argument("--only", default="", help="names of models, separated by commas")
     parser.add_argument("--repetitions", type=int, default=3)
     parser.add_argument("--cores", default="2,1")
+    parser.add_argument("--bench", type=Path, help="routebench-bench, for parts of the job")
     parser.add_argument("--before", type=Path, help="an older build, for instruction counts")
     arguments = parser.parse_args()
     if not (arguments.models / "MANIFEST.csv").is_file():
@@ -330,12 +388,17 @@ def main() -> None:
                 after = instructions(arguments.program.resolve(), path, scratch, False)
                 if before and after:
                     profiles.append((model, before, after))
+        parts = (speed_parts.measure(arguments.bench.resolve(), arguments.repetitions)
+                 if arguments.bench else {})
         runs: list[Run] = []
+        phases: list[Phases] = []
         for model in models:
             runs += measure(model, commands, cores, arguments.repetitions, scratch)
+            phases += measure_phases(arguments.program.resolve(), model, arguments.repetitions)
             # After every model, so that a long run that is ended leaves a page of what it has seen.
             write_page(arguments.out, runs,
-                       page(runs, missing, cores, arguments.repetitions, profiles, load, commit))
+                       page(runs, phases, parts, missing, cores, arguments.repetitions, profiles,
+                            load, commit))
     print(arguments.out / "README.md")
 
 
