@@ -62,11 +62,12 @@ class Cost:
 
 READ_AND_SLICE = "Read 2 M triangles (binary STL) and slice them into 750 layers"
 PARTS: list[Part | Cost] = [
-    *(Part(f"{READ_AND_SLICE}, {jobs} core{'s' if jobs > 1 else ''}",
-           f"read_and_slice/triangles:2000000/jobs:{jobs}/real_time",
-           "the file's bytes into memory " + ("that is new" if asks else "that is there"),
-           f"copy_large_binary_stl/triangles:2000000/asks_for_memory:{asks}/real_time", 12)
-      for jobs in (2, 1) for asks in (1, 0)),
+    *(Part(f"{READ_AND_SLICE}, {jobs} core{'s' if jobs > 1 else ''}, "
+           + ("new memory" if new else "memory that is there"),
+           f"read_and_slice/triangles:2000000/jobs:{jobs}/new_memory:{new}/real_time",
+           "the file's bytes, " + ("new memory" if new else "memory that is there"),
+           f"copy_large_binary_stl/triangles:2000000/new_memory:{new}/real_time", 12)
+      for jobs in (2, 1) for new in (1, 0)),
     *(Part(f"Read 2 M triangles (ASCII STL), {jobs} core{'s' if jobs > 1 else ''}",
            f"read_large_ascii_stl/triangles:2000000/jobs:{jobs}/real_time",
            "read the bytes and count lines", "scan_large_ascii_stl/2000000/real_time", 8)

@@ -3,6 +3,7 @@
 
 #include <benchmark/benchmark.h>
 #include <fcntl.h>
+#include <malloc.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -107,6 +108,14 @@ void read_into(const std::string& path, std::span<char> bytes) {
   ::close(file);
 }
 
+/// Gives freed memory back to the system, as a process that has just begun has to get its memory
+/// from there.
+void give_back_memory(benchmark::State& state) {
+  state.PauseTiming();
+  ::malloc_trim(0);
+  state.ResumeTiming();
+}
+
 /// Reading means welding, mending, the mesh's report and its placement, too.
 template <Kind kKind>
 void read_stl(benchmark::State& state) {
@@ -133,25 +142,19 @@ BENCHMARK(read_stl<Kind::kAscii>)->Name("read_ascii_stl")->Apply(over_sizes);
 BENCHMARK(read_stl<Kind::kBinary>)->Name("read_large_binary_stl")->Apply(two_million);
 BENCHMARK(read_stl<Kind::kAscii>)->Name("read_large_ascii_stl")->Apply(two_million);
 
-/// What the system takes to hand over the bytes of the same file: into memory that is there, or as
-/// to a program that has to ask for it.
+/// What the system takes to hand over the bytes of the same file, into memory that is there or new.
 void copy_large_binary_stl(benchmark::State& state) {
   const SphereFile& file = sphere_file(state.range(0), Kind::kBinary);
-  const auto memory = [&file] { return std::make_unique_for_overwrite<char[]>(file.bytes()); };
-  const bool asks = state.range(1) != 0;
-  auto bytes = memory();
   for (auto _ : state) {
-    if (asks) {
-      bytes.reset();
-      bytes = memory();
-    }
+    if (state.range(1) != 0) give_back_memory(state);
+    const auto bytes = std::make_unique_for_overwrite<char[]>(file.bytes());
     read_into(file.path(), {bytes.get(), file.bytes()});
     benchmark::DoNotOptimize(bytes.get());
   }
   count(state, file.bytes());
 }
 BENCHMARK(copy_large_binary_stl)
-    ->ArgNames({"triangles", "asks_for_memory"})
+    ->ArgNames({"triangles", "new_memory"})
     ->ArgsProduct({{2'000'000}, {0, 1}})
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
@@ -168,19 +171,26 @@ void scan_large_ascii_stl(benchmark::State& state) {
 }
 BENCHMARK(scan_large_ascii_stl)->Arg(2'000'000)->Unit(benchmark::kMillisecond)->UseRealTime();
 
-/// From a binary file to 750 layers.
+/// From a binary file to 750 layers, in memory that is there or new.
 template <Kind kKind>
 void read_and_slice(benchmark::State& state) {
   const SphereFile& file = sphere_file(state.range(0), kKind);
   const ParallelFor parallel_for = parallel_loop(static_cast<int>(state.range(1)));
   for (auto _ : state) {
+    if (state.range(2) != 0) give_back_memory(state);
     const Model model = load_model(file.path(), {}, parallel_for);
     benchmark::DoNotOptimize(slice_mesh(model.mesh, {}, model.spec, parallel_for));
   }
   count(state, file.bytes());
 }
-BENCHMARK(read_and_slice<Kind::kBinary>)->Name("read_and_slice")->Apply(two_million);
-BENCHMARK(read_and_slice<Kind::kScan>)->Name("read_and_slice_scan")->Apply(two_million);
+void over_memory(benchmark::internal::Benchmark* bench) {
+  bench->ArgNames({"triangles", "jobs", "new_memory"})
+      ->ArgsProduct({{2'000'000}, {1, 2}, {0, 1}})
+      ->Unit(benchmark::kMillisecond)
+      ->UseRealTime();
+}
+BENCHMARK(read_and_slice<Kind::kBinary>)->Name("read_and_slice")->Apply(over_memory);
+BENCHMARK(read_and_slice<Kind::kScan>)->Name("read_and_slice_scan")->Apply(over_memory);
 
 /// Equal corners become one vertex; what the readers do on the way.
 void weld_corners(benchmark::State& state) {
