@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import statistics
 from collections import defaultdict
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from routebench_plots.errors import PlotError
@@ -114,11 +114,17 @@ def compare(
     `times` is auto (only if both ran on one kind of processor), always or never.
     """
     _check_alike(old, new)
-    before, after = _cells(old), _cells(new)
+    meshes = _meshes(old, {})
+    names = _names_before(meshes, _meshes(new, {}))
+    before, after = _cells(old, {}), _cells(new, names)
     pairs = [Pair(place, before[place], after[place]) for place in before if place in after]
     missing = [place for place in before if place not in after]
     notes = []
-    changed = _changed_models(old, new)
+    changed = {
+        label
+        for label, hashes in _meshes(new, names).items()
+        if label in meshes and meshes[label] != hashes
+    }
     if changed:
         notes.append(f"not compared, for the model itself differs: {', '.join(sorted(changed))}")
         pairs = [pair for pair in pairs if pair.place.model not in changed]
@@ -150,9 +156,12 @@ def _differ(pair: Pair) -> bool:
     return pair.old.outcome != pair.new.outcome
 
 
-def _cells(results: Results) -> dict[Place, Cell]:
+def _cells(results: Results, names: Mapping[str, str]) -> dict[Place, Cell]:
+    """By place; `names` are those of models that are to be called otherwise."""
     return {
-        Place(setting.label, contender.label, model.label, cell.seed): cell
+        Place(
+            setting.label, contender.label, names.get(model.label, model.label), cell.seed
+        ): cell
         for setting, model, contender in _slots(results)
         for cell in results.slot(setting, model, contender).cells
         if cell.outcome != NOT_INSTALLED
@@ -190,18 +199,31 @@ def _check_alike(old: Results, new: Results) -> None:
                     )
 
 
-def _changed_models(old: Results, new: Results) -> set[str]:
-    """Models of one name with different meshes."""
+def _meshes(results: Results, names: Mapping[str, str]) -> dict[str, set[str]]:
+    """The hashes of each model's mesh, by the model's name."""
+    found: dict[str, set[str]] = defaultdict(set)
+    for setting in results.settings:
+        for model in results.models:
+            found[names.get(model.label, model.label)].add(results.mesh_hash(setting, model))
+    return {label: hashes - {""} for label, hashes in found.items()}
 
-    def hashes(results: Results) -> dict[str, set[str]]:
-        found: dict[str, set[str]] = defaultdict(set)
-        for setting in results.settings:
-            for model in results.models:
-                found[model.label].add(results.mesh_hash(setting, model))
-        return {label: all_of - {""} for label, all_of in found.items()}
 
-    before, after = hashes(old), hashes(new)
-    return {label for label in before.keys() & after.keys() if before[label] != after[label]}
+def _names_before(
+    before: Mapping[str, set[str]], after: Mapping[str, set[str]]
+) -> dict[str, str]:
+    """What models were called whose names are new: a name is as short as tells the models of one
+    experiment apart, so another model may make it longer. Their meshes tell which they are, where
+    no two have the same."""
+
+    def only_here(here: Mapping[str, set[str]], there: Mapping[str, set[str]]) -> dict[str, str]:
+        by_mesh: dict[str, list[str]] = defaultdict(list)
+        for label, hashes in here.items():
+            if label not in there and len(hashes) == 1:
+                by_mesh[min(hashes)].append(label)
+        return {mesh: labels[0] for mesh, labels in by_mesh.items() if len(labels) == 1}
+
+    old, new = only_here(before, after), only_here(after, before)
+    return {new[mesh]: old[mesh] for mesh in old.keys() & new.keys()}
 
 
 def _compares_times(old: Results, new: Results, times: str, notes: list[str]) -> bool:

@@ -258,6 +258,23 @@ class GateTest(PlotTestCase):
         self.assertEqual(code, 0, page)
         self.assertIn("the model itself differs: m1", page)
 
+    def test_a_model_with_a_longer_name_is_told_by_its_mesh(self) -> None:
+        old, new = self.make("old"), self.make("new", self.scale("travel_mm", 2.0, 1))
+        for path, name, mesh in ((old, "a/m1.stl", "x"), (new, "b/m1.stl", "x")):
+            made = sqlite3.connect(path)
+            made.execute(
+                "UPDATE model SET mesh_hash = ?, spec = ? WHERE spec = 'm1'", (mesh, name)
+            )
+            if path == new:  # which makes both names longer
+                made.execute("UPDATE model SET mesh_hash = 'y', spec = 'c/m1.stl' WHERE spec = 'm2'")
+            made.commit()
+            made.close()
+        code, page, _ = self.gate(old, new)
+        self.assertEqual(code, 1, page)
+        self.assertIn("Travel of one on m1.stl: ", page)
+        for place in ("one on m2\n", "one on c/m1.stl\n"):
+            self.assertIn(place, page, "missing, and new")
+
     def test_what_cannot_be_compared_is_refused(self) -> None:
         old = self.make("old")
         other = self.make("task", task={**TASK, "layer_height_mm": 0.3})
