@@ -105,6 +105,7 @@ class PartLedger {
  public:
   PartLedger(const BitPlane& samples, const Polygons& part, double line_distance_mm)
       : part_(samples),
+        polygons_(part),
         grid_(part_.grid()),
         line_distance_mm_(line_distance_mm),
         cell_shift_(cell_shift(grid_.to_steps(line_distance_mm))),
@@ -117,12 +118,9 @@ class PartLedger {
     count_samples();
   }
 
-  /// A bead `strength` times as strong as the task's.
-  void lay(Point2 a, Point2 b, double strength) {
-    const Point2 from = grid_.to_steps(a);
-    const Point2 to = grid_.to_steps(b);
+  /// A bead `strength` times as strong as the task's, from and to a place in steps.
+  void lay(Point2 from, Point2 to, double length_mm, double strength) {
     if (!box_.may_hold_of(from, to)) return;
-    const double length_mm = distance(a, b);
     const Pieces pieces(grid_, from, to, least_pieces(length_mm));
     float filled = 0;  // not known yet: most beads of walls lay nothing here
     pieces.visit([&](std::size_t column, std::size_t row) {
@@ -132,17 +130,11 @@ class PartLedger {
     });
   }
 
-  /// Boundary of the part: half a line.
-  void lay_boundary(const Ring& ring) {
-    for (std::size_t i = 0; i < ring.size(); ++i) {
-      const Point2 a = ring[i];
-      const Point2 b = ring[i + 1 == ring.size() ? 0 : i + 1];
-      const double length_mm = distance(a, b);
-      const Pieces pieces(grid_, grid_.to_steps(a), grid_.to_steps(b), least_pieces(length_mm));
-      const float filled = samples_filled_by(pieces.share() * length_mm / 2);
-      pieces.visit([this, filled](std::size_t column, std::size_t row) {
-        cell_at(laid_, column, row) += filled;
-      });
+  /// The boundary of the part: half a line.
+  void lay_boundary() {
+    for (const Polygon& polygon : polygons_) {
+      lay_ring(polygon.outer);
+      for (const Ring& hole : polygon.holes) lay_ring(hole);
     }
   }
 
@@ -222,6 +214,19 @@ class PartLedger {
     return word;
   }
 
+  void lay_ring(const Ring& ring) {
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      const Point2 a = ring[i];
+      const Point2 b = ring[i + 1 == ring.size() ? 0 : i + 1];
+      const double length_mm = distance(a, b);
+      const Pieces pieces(grid_, grid_.to_steps(a), grid_.to_steps(b), least_pieces(length_mm));
+      const float filled = samples_filled_by(pieces.share() * length_mm / 2);
+      pieces.visit([this, filled](std::size_t column, std::size_t row) {
+        cell_at(laid_, column, row) += filled;
+      });
+    }
+  }
+
   /// Of at most half a cell each.
   [[nodiscard]] double least_pieces(double length_mm) const {
     return grid_.to_steps(length_mm) * pieces_a_step_;
@@ -239,6 +244,7 @@ class PartLedger {
   }
 
   const BitPlane& part_;
+  const Polygons& polygons_;
   const SampleGrid& grid_;
   double line_distance_mm_;
   unsigned cell_shift_;  // of columns and rows to their cells
@@ -250,10 +256,9 @@ class PartLedger {
   std::vector<Columns> wanted_;  // of each row, from the first to the last that demands anything
 };
 
-double skipped_of_part_mm2(const BitPlane& samples, const Polygons& part, double line_distance_mm,
-                           const std::vector<Run>& runs, const Task& task) {
-  if (part.empty()) return 0;
-  PartLedger ledger(samples, part, line_distance_mm);
+/// Lays all beads, in all parts at once.
+void lay_beads(std::span<PartLedger> parts, const SampleGrid& grid, const std::vector<Run>& runs,
+               const Task& task) {
   double known_width_mm = 0;  // most beads are as wide as the one before
   double strength = 0;
   visit_beads(runs, [&](Point2 a, Point2 b, double width_mm) {
@@ -261,23 +266,28 @@ double skipped_of_part_mm2(const BitPlane& samples, const Polygons& part, double
       known_width_mm = width_mm;
       strength = task.mean_width_mm(width_mm) / task.spacing_mm();
     }
-    ledger.lay(a, b, strength);
+    const Point2 from = grid.to_steps(a);
+    const Point2 to = grid.to_steps(b);
+    const double length_mm = distance(a, b);
+    for (PartLedger& part : parts) part.lay(from, to, length_mm, strength);
   });
-  for (const Polygon& polygon : part) {
-    ledger.lay_boundary(polygon.outer);
-    for (const Ring& hole : polygon.holes) ledger.lay_boundary(hole);
-  }
-  return ledger.skipped_area_mm2();
 }
 
 }  // namespace
 
 double skipped_area_mm2(const LayerSamples& samples, const Demand& demand,
                         const std::vector<Run>& runs, const Task& task) {
-  double skipped = skipped_of_part_mm2(samples.dense, demand.dense, task.spacing_mm(), runs, task);
-  if (task.density > 0)
-    skipped += skipped_of_part_mm2(samples.sparse, demand.sparse, task.spacing_mm() / task.density,
-                                   runs, task);
+  std::vector<PartLedger> parts;
+  parts.reserve(2);
+  if (!demand.dense.empty()) parts.emplace_back(samples.dense, demand.dense, task.spacing_mm());
+  if (!demand.sparse.empty() && task.density > 0)
+    parts.emplace_back(samples.sparse, demand.sparse, task.spacing_mm() / task.density);
+  lay_beads(parts, samples.grid, runs, task);
+  double skipped = 0;
+  for (PartLedger& part : parts) {
+    part.lay_boundary();
+    skipped += part.skipped_area_mm2();
+  }
   return skipped;
 }
 
