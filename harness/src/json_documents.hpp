@@ -31,7 +31,7 @@ struct PlanResult {
   std::optional<std::uint64_t> seed;  ///< nothing if nobody has drawn lots
   std::size_t layers;                 ///< that were to be planned
   const JudgedCell* cell;             ///< nullptr: not judged
-  const PlanPhases* cpu;              ///< nullptr: not asked for
+  const PlanPhases* cpu = nullptr;    ///< nullptr: not asked for
 };
 /// What is not judged has neither outcome nor scores: they are null.
 [[nodiscard]] Json plan_document(const PlanResult& result);

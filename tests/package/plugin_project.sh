@@ -34,6 +34,15 @@ routebench.plan(routebench.slice_model('shape:box'), 'greedy_shell')"
 "$program" plan shape:box --fill my_python --plugin "$work/my_python/my_python.py" \
   --task perimeters=0 --task density=1 >/dev/null
 
+# What a package lacks is named, and costs nothing but the files that want it.
+printf 'PK\3\4' >"$work/part.3mf"
+find "$work/moved" -name 'libroutebench_3mf.so*' -exec mv {} "$work" \;
+complaint=$("$program" slice "$work/part.3mf" 2>&1 >/dev/null) && code=0 || code=$?
+if [ "$code" != 3 ] || [[ $complaint != *"the reader of 3MF files cannot be loaded: "*libroutebench_3mf* ]]; then
+  echo "plugin_project.sh: without the reader of 3MF files: exit code $code, $complaint" >&2
+  exit 1
+fi
+
 # The page's first block of commands, one a line.
 mapfile -t commands < <(sed -n '/^```sh$/,/^```$/{/^```/!p;/^```$/q}' "$source/planners/README.md")
 if [ "${#commands[@]}" -lt 6 ]; then
