@@ -89,6 +89,49 @@ TEST(ThinWalls, OfAnyWidthAreValid) {
       }
 }
 
+TEST(ThinWalls, HardlyWiderThanWhatWallsTakeAreValid) {
+  // Facets of the two sides do not face each other, so the wall's region is a chain of slivers.
+  for (const int walls : {1, 2})
+    for (int i = -5; i <= 20; ++i) {
+      const double width_mm = 0.45 + (walls - 1) * 2 * 0.4070796 + i / 500.0;
+      const Polygon ring{test::circle({10, 10}, 10, 200),
+                         {test::reversed(test::circle({10, 10}, 10 - width_mm, 170))}};
+      const Judged result = judged({ring}, 1);
+      EXPECT_EQ(result.verdict.outcome, Outcome::kValid)
+          << width_mm << " mm: " << result.verdict.reason;
+      EXPECT_LE(result.value("doubled"), 0.1) << width_mm;
+    }
+}
+
+TEST(ThinWalls, ThatWidenSlowlyAreValid) {
+  for (const double least_mm : {0.4, 0.42, 0.45, 0.5})
+    for (const double ratio : {1.2, 1.24, 1.3, 1.5}) {
+      const double most_mm = ratio * least_mm;
+      Ring wedge;
+      for (const Point2 p : {Point2{0, -least_mm / 2}, Point2{40, -most_mm / 2},
+                             Point2{40, most_mm / 2}, Point2{0, least_mm / 2}})
+        wedge.push_back(snap(p));
+      const Judged result = judged({{wedge, {}}}, 1);
+      EXPECT_EQ(result.verdict.outcome, Outcome::kValid)
+          << least_mm << " to " << most_mm << " mm: " << result.verdict.reason;
+    }
+}
+
+TEST(ThinWalls, ScrapsStayWhereNoLineFits) {
+  // Two parts of a wall's region, in a place hardly longer than they are and in a long one.
+  const PlanContext context = test::context_for(2, 1);
+  const double half_mm = context.line_width_mm / 2;
+  const Polygons scraps{{test::rectangle(0, 0, 0.5, 0.0625), {}},
+                        {test::rectangle(1, 0, 1.5, 0.0625), {}}};
+  const auto left = [&](double beyond_mm) {
+    const Polygons place{
+        {test::rectangle(-beyond_mm, -half_mm, 1.5 + beyond_mm, 0.0625 + half_mm), {}}};
+    return without_scraps(scraps, place, half_mm, 0.25, context).size();
+  };
+  EXPECT_EQ(left(half_mm), 2U);
+  EXPECT_EQ(left(10), 0U);
+}
+
 TEST(ThinWalls, NoBeadInsideAThirdOfAMillimetreHoldsEnough) {
   // A bead 0.3 mm wide and 0.2 mm high has the section of a strip 0.257 mm wide: 86 % of the part,
   // and less by what its ends lack. All of it is reached.
