@@ -55,14 +55,15 @@ struct Judged {
   }
 };
 
-/// By greedy_shell and rectilinear with two walls.
-Judged judged(const Polygons& polygons, double density, const ParamSet& shell_params = {}) {
+/// By greedy_shell and a fill planner.
+Judged judged(const Polygons& polygons, double density, const ParamSet& shell_params = {},
+              int walls = 2, const std::string& fill = "rectilinear") {
   Task task;
   task.density = density;
+  task.perimeters = walls;
   Registry registry;
   register_builtin_planners(registry);
-  const ContenderSpec spec{"two walls", SlotSpec{"greedy_shell", shell_params},
-                           SlotSpec{"rectilinear", {}}};
+  const ContenderSpec spec{"walls", SlotSpec{"greedy_shell", shell_params}, SlotSpec{fill, {}}};
   const Contender contender(spec, registry);
   const Judge judge(task, Printer{});
   std::vector<LayerScore> layers;
@@ -115,6 +116,21 @@ TEST(ThinWalls, ThatWidenSlowlyAreValid) {
       EXPECT_EQ(result.verdict.outcome, Outcome::kValid)
           << least_mm << " to " << most_mm << " mm: " << result.verdict.reason;
     }
+}
+
+TEST(ThinWalls, GetNoMoreThanTheyNeedOfSparseFillBetweenThem) {
+  for (const int walls : {1, 2, 3})
+    for (int tenths = 10; tenths <= 60; tenths += 2)
+      for (const double density : {0.1, 0.2, 0.3}) {
+        const Polygon frame{
+            test::rectangle(0, 0, 60, 60),
+            {test::reversed(test::rectangle(tenths / 10.0, tenths / 10.0, 60 - tenths / 10.0,
+                                            60 - tenths / 10.0))}};
+        const Judged result = judged({frame}, density, {}, walls);
+        EXPECT_EQ(result.verdict.outcome, Outcome::kValid)
+            << walls << " walls, " << tenths / 10.0 << " mm at " << density << ": "
+            << result.verdict.reason;
+      }
 }
 
 TEST(ThinWalls, ScrapsStayWhereNoLineFits) {
