@@ -365,13 +365,16 @@ class GreedyShell final : public Planner {
   }
 
   [[nodiscard]] Island walls_of(const Polygon& polygon, const PlanContext& context) const {
+    const Polygons outline{polygon};
     std::vector<Polygons> regions = wall_regions(polygon, context);
     Island island;
     for (std::size_t wall = 0; wall < regions.size(); ++wall) {
       const bool innermost = wall + 1 == regions.size();
       const bool twice =
           params_.small_twice && innermost && offset(regions[wall], -context.spacing_mm).empty();
-      regions[wall] = where_walled(std::move(regions[wall]), wall == 0, context);
+      const bool is_first = wall == 0;
+      const Polygons& before = is_first ? outline : regions[wall - 1];
+      regions[wall] = where_walled(std::move(regions[wall]), before, is_first, context);
       Pool pool;
       const bool another = std::cmp_less(wall + 1, context.perimeters);
       for (const Polygon& part : regions[wall]) add_wall(part, another, twice, context, pool);
@@ -379,19 +382,20 @@ class GreedyShell final : public Planner {
     }
     if (params_.order == Order::kInsideOut) std::reverse(island.pools.begin(), island.pools.end());
     if (params_.gaps == Gaps::kFill)
-      island.gaps = gap_lines({polygon}, regions, context.perimeters, widest_mm(context), context);
+      island.gaps = gap_lines(outline, regions, context.perimeters, widest_mm(context), context);
     return island;
   }
 
   /// A wall's region without what is too narrow for the wall.
-  [[nodiscard]] Polygons where_walled(Polygons region, bool is_first,
+  [[nodiscard]] Polygons where_walled(Polygons region, const Polygons& before, bool is_first,
                                       const PlanContext& context) const {
     const double near_mm = kNearSides * context.spacing_mm;
     if (params_.thin == Thin::kDrop) return without_thin_parts(region, near_mm);
     // Where gaps are left, a line would not take the wall's place.
     if (params_.thin == Thin::kDouble || params_.gaps == Gaps::kLeave) return region;
     const double place_mm = is_first ? context.line_width_mm : context.spacing_mm;
-    return without_strips(std::move(region), place_mm / 2, near_mm, context);
+    return without_scraps(without_strips(std::move(region), place_mm / 2, near_mm, context), before,
+                          place_mm / 2, near_mm, context);
   }
 
   /// Adds the wall round one part of its region. Where another one is asked for inside it and there

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "routebench/geometry/region.hpp"
+#include "routebench/geometry/vec.hpp"
 #include "routebench/planning/frame.hpp"
 #include "routebench/planning/hatch.hpp"
 #include "routebench/planning/ordering.hpp"
@@ -33,6 +34,9 @@ constexpr double kReach = 0.6;
 // speak of.
 constexpr double kNarrowLines = 4;
 constexpr double kReachInNarrow = 0.45;
+// Below density 1 joints come on top of the lines, and in narrow regions are longer than those. By
+// this share of what a region and the walls about it need, more may be laid.
+constexpr double kMostOver = 0.15;
 
 struct RectilinearParams {
   Published published = Published::kNone;
@@ -199,7 +203,7 @@ class Rectilinear final : public Planner {
     rule.min_length_mm = rules.min_length_mm;
     if (params.ends == Ends::kAlong) rule.end_gap_mm = rules.end_gap_mm;
     const Hatch hatch(region, rule);
-    const std::vector<Joint> joints = joints_of(hatch, region, rules, distance_mm);
+    const std::vector<Joint> joints = joints_of(hatch, region, rules, distance_mm, context);
     const auto lay = [&](std::vector<std::vector<Point2>> polylines) {
       for (std::vector<Point2>& points : polylines)
         strokes.push_back({std::move(points), context.line_width_mm});
@@ -210,12 +214,39 @@ class Rectilinear final : public Planner {
   }
 
   static std::vector<Joint> joints_of(const Hatch& hatch, const Polygon& region, const Rules& rules,
-                                      double distance_mm) {
+                                      double distance_mm, const PlanContext& context) {
     const RectilinearParams& params = rules.params;
     if (params.link == Link::kNone) return {};
     if (params.link == Link::kFlows || params.ends == Ends::kAlong)
       return join_flows(hatch, rules.joints_may_leave ? nullptr : &region);
-    return join_along_boundary(hatch, params.max_link * distance_mm);
+    std::vector<Joint> joints = join_along_boundary(hatch, params.max_link * distance_mm);
+    return context.density < 1 ? affordable(std::move(joints), hatch, region, distance_mm, context)
+                               : joints;
+  }
+
+  /// Of joints as many, spread evenly, as make no more of lines and joints than is allowed.
+  static std::vector<Joint> affordable(std::vector<Joint> joints, const Hatch& hatch,
+                                       const Polygon& region, double distance_mm,
+                                       const PlanContext& context) {
+    // What is to be filled is half a line wider on all sides.
+    const double rim_mm = perimeter_mm(region);
+    const double needed_mm = (area_mm2(region) + context.line_width_mm / 2 * rim_mm) / distance_mm;
+    const double over_mm = kMostOver * (needed_mm + context.perimeters * rim_mm);
+    double lines_mm = 0, joints_mm = 0;
+    for (std::size_t piece = 0; piece < hatch.pieces(); ++piece)
+      lines_mm += distance(hatch.ends()[2 * piece].point, hatch.ends()[2 * piece + 1].point);
+    for (const Joint& joint : joints) joints_mm += length_mm(joint.path);
+    const double allowed_mm = needed_mm + over_mm - lines_mm;
+    if (joints_mm <= allowed_mm) return joints;
+    double seen_mm = 0, kept_mm = 0;
+    std::erase_if(joints, [&](const Joint& joint) {
+      const double mm = length_mm(joint.path);
+      seen_mm += mm;
+      const bool kept = kept_mm + mm <= allowed_mm / joints_mm * seen_mm;
+      if (kept) kept_mm += mm;
+      return !kept;
+    });
+    return joints;
   }
 
   RectilinearParams params_;

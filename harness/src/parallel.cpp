@@ -11,6 +11,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -38,7 +39,7 @@ class Workers {
   void run(std::size_t others, const std::function<void()>& work) {
     const std::unique_lock use(in_use_, std::try_to_lock);
     if (!use || !is_owner()) return work();
-    while (threads_.size() < others) threads_.emplace_back([this] { wait_for_work(); });
+    begin(others);
     let_none_wake_here();
     std::unique_lock lock(mutex_);
     work_ = &work;
@@ -55,6 +56,15 @@ class Workers {
   [[nodiscard]] bool is_owner() const { return ::getpid() == owner_; }
 
  private:
+  /// Begins threads until there are so many, or as many as the system lets the process have.
+  void begin(std::size_t threads) {
+    try {
+      while (threads_.size() < threads) threads_.emplace_back([this] { wait_for_work(); });
+    } catch (const std::system_error&) {
+      // Who has begun takes part, and this thread does the rest.
+    }
+  }
+
   void wait_for_work() {
     std::unique_lock lock(mutex_);
     while (true) {

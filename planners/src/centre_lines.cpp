@@ -17,6 +17,10 @@ namespace routebench {
 namespace {
 
 constexpr double kWidthRatio = 1.25;  // of the places that one stroke takes
+// The same if the stroke, as wide as the narrowest of them, would leave more open than so many of
+// its widths squared: there a further stroke costs little.
+constexpr double kOpenRatio = 1.07;
+constexpr double kOpenShare = 0.25;
 constexpr double kStraightMm = 0.002;
 constexpr double kTouchMm = 0.004;
 // Places just wide enough must leave a core that offsets do not take for noise.
@@ -148,19 +152,24 @@ class StrokeCutter {
     if (line.free_back && last + 1 == line.points.size()) length += line.radii_mm[last];
     if (length < rule_.min_length_mm) return;
     std::size_t begin = first;
-    double least = width_at(line, first), most = least, piece_mm = 0;
+    double least = width_at(line, first), most = least, piece_mm = 0, piece_mm2 = 0;
     for (std::size_t i = first + 1; i <= last; ++i) {
-      const double width = width_at(line, i);
+      const double before = width_at(line, i - 1), width = width_at(line, i);
+      const double narrow = std::min(least, width), wide = std::max(most, width);
+      const double open_mm2 = piece_mm2 - narrow * piece_mm;
       // A piece shorter than half its width is under the round end of its neighbour anyway.
-      if (std::max(most, width) > kWidthRatio * std::min(least, width) && piece_mm > most / 2) {
+      if ((wide > kWidthRatio * narrow && piece_mm > most / 2) ||
+          (wide > kOpenRatio * narrow && open_mm2 > kOpenShare * most * most)) {
         lay(line, begin, i - 1);
         begin = i - 1;
-        least = most = width_at(line, begin);
-        piece_mm = 0;
+        least = most = before;
+        piece_mm = piece_mm2 = 0;
       }
       least = std::min(least, width);
       most = std::max(most, width);
-      piece_mm += distance(line.points[i - 1], line.points[i]);
+      const double step_mm = distance(line.points[i - 1], line.points[i]);
+      piece_mm += step_mm;
+      piece_mm2 += step_mm * (before + width) / 2;
     }
     if (begin == first || piece_mm > most / 2) lay(line, begin, last);
   }

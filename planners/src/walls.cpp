@@ -9,6 +9,7 @@
 
 #include "narrow_places.hpp"
 #include "near_sides.hpp"
+#include "routebench/geometry/edge_grid.hpp"
 #include "routebench/geometry/grid.hpp"
 #include "routebench/geometry/region.hpp"
 #include "routebench/geometry/vec.hpp"
@@ -28,6 +29,8 @@ constexpr double kSideMm = 0.015;
 /// The sides of a strip are so much of its length apart along the boundary, where that is at its
 /// middle; there they are nearer to each other than it is wide anywhere.
 constexpr double kStripShare = 0.75;
+/// Scraps that are less of a wall's length do no harm that is worth a look.
+constexpr double kScrapShare = 0.2;
 /// What is narrow is looked at so many spacings round about.
 constexpr double kMarginSpacings = 3;
 
@@ -201,6 +204,13 @@ double shortest_strip_mm(double reach_mm, double near_mm, const PlanContext& con
                      : std::numeric_limits<double>::infinity();
 }
 
+/// Whether one line as wide as a narrow place gives enough of what the place needs: if it is long.
+bool line_suffices(const Polygon& place, double reach_mm, const PlanContext& context) {
+  const double area = area_mm2(place), width_mm = strip_width_mm(place);
+  const double length_mm = area / width_mm - (place.holes.empty() ? width_mm : 0);
+  return (width_mm - 2 * reach_mm + context.spacing_mm) * length_mm >= kEnough * area;
+}
+
 /// What of an area is farther than `reach_mm` from what is laid; all of it, as it is, if nothing
 /// is. Most sides of the area are as far as that, and would cross those of what is laid, grown, at
 /// every corner.
@@ -244,6 +254,27 @@ Polygons without_strips(Polygons region, double reach_mm, double near_mm,
   region.erase(first_narrow, region.end());
   append(subtract(narrow, offset(strips, kSideMm)), region);
   return region;
+}
+
+Polygons without_scraps(Polygons region, const Polygons& before, double reach_mm, double near_mm,
+                        const PlanContext& context) {
+  if (region.size() < 2) return region;
+  Polygons laid, scraps;
+  for (const Polygon& part : region) {
+    const bool is_scrap = strip_width_mm(part) < near_mm && offset({part}, -near_mm / 2).empty();
+    (is_scrap ? scraps : laid).push_back(part);
+  }
+  if (perimeter_mm(scraps) <= kScrapShare * perimeter_mm(region)) return region;
+  Polygons places = laid.empty() ? before : left_open(before, laid, near_mm / 2 + reach_mm);
+  std::erase_if(places,
+                [&](const Polygon& place) { return !line_suffices(place, reach_mm, context); });
+  if (places.empty()) return region;
+  const EdgeGrid in_places(places);
+  std::erase_if(scraps, [&](const Polygon& scrap) {
+    return std::ranges::any_of(scrap.outer, [&](Point2 p) { return in_places.contains(p); });
+  });
+  append(std::move(scraps), laid);
+  return laid;
 }
 
 std::vector<Ring> rings_of(const Polygons& polygons) {

@@ -334,6 +334,23 @@ TEST(JudgeRuler, OutlineCovered) {
   EXPECT_NEAR(*bench.measure("outline_covered", {{both.strokes.front()}}), 60.0 / 80, 1e-3);
 }
 
+TEST(JudgeRuler, SkippedOnLayersOfMetresIsWhatIsLeftOut) {
+  // Samples there are farther apart than lines.
+  for (const double size_mm : {1000.0, 1500.0, 2200.0}) {
+    Bench bench;
+    bench.task.density = 1;
+    bench.layer = layer_of({{rectangle(0, 0, size_mm, size_mm), {}}});
+    const double spacing_mm = bench.task.spacing_mm();
+    Route all, most;
+    for (double y = spacing_mm / 2; y < size_mm; y += spacing_mm) {
+      all.strokes.push_back(line({{spacing_mm / 2, y}, {size_mm - spacing_mm / 2, y}}));
+      if (y < 0.6 * size_mm || y > 0.65 * size_mm) most.strokes.push_back(all.strokes.back());
+    }
+    EXPECT_EQ(*bench.measure("skipped", all), 0) << size_mm;
+    EXPECT_NEAR(*bench.measure("skipped", most), 0.05, 0.003) << size_mm;
+  }
+}
+
 TEST(JudgeRuler, HollowIsTheCentreLineOutside) {
   const Bench bench;
   EXPECT_EQ(*bench.measure("hollow_mm", {{line({{0, 0}, {20, 0}, {20, 10}})}}), 0);

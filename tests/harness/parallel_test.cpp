@@ -1,12 +1,14 @@
 #include "routebench/harness/parallel.hpp"
 
 #include <gtest/gtest.h>
+#include <pthread.h>
 #include <sched.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <stdexcept>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -78,6 +80,31 @@ TEST(ParallelLoop, IsAPlainLoopInAFork) {
   int status = 0;
   ASSERT_EQ(::waitpid(child, &status, 0), child);
   EXPECT_EQ(status, 0);
+}
+
+TEST(ParallelLoop, DoesWithoutThreadsThatTheSystemDenies) {
+  pthread_attr_t usual, denied;
+  ASSERT_EQ(::pthread_getattr_default_np(&usual), 0);
+  ASSERT_EQ(::pthread_attr_init(&denied), 0);
+  // No process has room for such a stack.
+  ASSERT_EQ(::pthread_attr_setstacksize(&denied, std::size_t{1} << 60), 0);
+  ASSERT_EQ(::pthread_setattr_default_np(&denied), 0);
+  EXPECT_THROW(std::thread([] {}).join(), std::system_error);
+  const ParallelFor parallel_for = parallel_loop(3);
+  std::vector<std::atomic<int>> runs(100);
+  EXPECT_NO_THROW(parallel_for(runs.size(), [&](std::size_t i) { ++runs[i]; }));
+  EXPECT_EQ(::pthread_setattr_default_np(&usual), 0);
+  for (const auto& count : runs) EXPECT_EQ(count, 1);
+  // Threads begin once they are granted.
+  std::atomic<int> begun{0};
+  parallel_for(3, [&](std::size_t) {
+    ++begun;
+    begun.notify_all();
+    for (int seen = begun; seen < 3; seen = begun) begun.wait(seen);
+  });
+  EXPECT_EQ(begun, 3);
+  ::pthread_attr_destroy(&denied);
+  ::pthread_attr_destroy(&usual);
 }
 
 TEST(ParallelLoop, TakesSeveralThreads) {

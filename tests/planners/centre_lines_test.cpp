@@ -8,8 +8,12 @@
 #include <vector>
 
 #include "planning.hpp"
+#include "polygons.hpp"
 #include "routebench/geometry/error.hpp"
 #include "routebench/geometry/grid.hpp"
+#include "routebench/geometry/vec.hpp"
+#include "routebench/planning/walls.hpp"
+#include "src/chordal_axis.hpp"
 
 namespace routebench {
 namespace {
@@ -96,6 +100,23 @@ TEST(CentreLines, WhatSidesTakeIsLeftOut) {
   EXPECT_TRUE(
       centre_lines(TakenSides{{test::rectangle(0, 0, 10, 0.4)}, {0.19}}, rule, PlanContext{})
           .empty());
+}
+
+TEST(ChordalAxis, IsATriangulationOfFewAndOfManyPoints) {
+  // A frame with long sides: of a triangulation of n points with one hole n triangles, and as many
+  // chords, since each triangle has three sides and n of all sides are the boundary's.
+  const Polygon frame{test::rectangle(0, 0, 40, 2),
+                      {test::reversed(test::rectangle(0.25, 0.25, 39.75, 1.75))}};
+  for (const double step_mm : {10.0, 1.0, 0.3, 0.1, 0.02}) {
+    std::size_t points = 0;
+    for (const Ring& ring : rings_of({frame}))
+      for (std::size_t i = 0; i < ring.size(); ++i)
+        points +=
+            static_cast<std::size_t>(distance(ring[i], ring[(i + 1) % ring.size()]) / step_mm + 1);
+    const ChordalAxis axis = chordal_axis(frame, step_mm);
+    EXPECT_EQ(axis.triangles.size(), points) << step_mm;
+    EXPECT_EQ(axis.chords.size(), points) << step_mm;
+  }
 }
 
 TEST(CentreLines, TheArmsOfAForkMeet) {

@@ -55,14 +55,15 @@ struct Judged {
   }
 };
 
-/// By greedy_shell and rectilinear with two walls.
-Judged judged(const Polygons& polygons, double density, const ParamSet& shell_params = {}) {
+/// By greedy_shell and a fill planner.
+Judged judged(const Polygons& polygons, double density, const ParamSet& shell_params = {},
+              int walls = 2, const std::string& fill = "rectilinear") {
   Task task;
   task.density = density;
+  task.perimeters = walls;
   Registry registry;
   register_builtin_planners(registry);
-  const ContenderSpec spec{"two walls", SlotSpec{"greedy_shell", shell_params},
-                           SlotSpec{"rectilinear", {}}};
+  const ContenderSpec spec{"walls", SlotSpec{"greedy_shell", shell_params}, SlotSpec{fill, {}}};
   const Contender contender(spec, registry);
   const Judge judge(task, Printer{});
   std::vector<LayerScore> layers;
@@ -87,6 +88,64 @@ TEST(ThinWalls, OfAnyWidthAreValid) {
         EXPECT_EQ(result.value("hollow_mm"), 0);
         EXPECT_GE(result.value("covered"), 0.96);  // the strip between second walls may stay open
       }
+}
+
+TEST(ThinWalls, HardlyWiderThanWhatWallsTakeAreValid) {
+  // Facets of the two sides do not face each other, so the wall's region is a chain of slivers.
+  for (const int walls : {1, 2})
+    for (int i = -5; i <= 20; ++i) {
+      const double width_mm = 0.45 + (walls - 1) * 2 * 0.4070796 + i / 500.0;
+      const Polygon ring{test::circle({10, 10}, 10, 200),
+                         {test::reversed(test::circle({10, 10}, 10 - width_mm, 170))}};
+      const Judged result = judged({ring}, 1);
+      EXPECT_EQ(result.verdict.outcome, Outcome::kValid)
+          << width_mm << " mm: " << result.verdict.reason;
+      EXPECT_LE(result.value("doubled"), 0.1) << width_mm;
+    }
+}
+
+TEST(ThinWalls, ThatWidenSlowlyAreValid) {
+  for (const double least_mm : {0.4, 0.42, 0.45, 0.5})
+    for (const double ratio : {1.2, 1.24, 1.3, 1.5}) {
+      const double most_mm = ratio * least_mm;
+      Ring wedge;
+      for (const Point2 p : {Point2{0, -least_mm / 2}, Point2{40, -most_mm / 2},
+                             Point2{40, most_mm / 2}, Point2{0, least_mm / 2}})
+        wedge.push_back(snap(p));
+      const Judged result = judged({{wedge, {}}}, 1);
+      EXPECT_EQ(result.verdict.outcome, Outcome::kValid)
+          << least_mm << " to " << most_mm << " mm: " << result.verdict.reason;
+    }
+}
+
+TEST(ThinWalls, GetNoMoreThanTheyNeedOfSparseFillBetweenThem) {
+  for (const int walls : {1, 2, 3})
+    for (int tenths = 10; tenths <= 60; tenths += 2)
+      for (const double density : {0.1, 0.2, 0.3}) {
+        const Polygon frame{
+            test::rectangle(0, 0, 60, 60),
+            {test::reversed(test::rectangle(tenths / 10.0, tenths / 10.0, 60 - tenths / 10.0,
+                                            60 - tenths / 10.0))}};
+        const Judged result = judged({frame}, density, {}, walls);
+        EXPECT_EQ(result.verdict.outcome, Outcome::kValid)
+            << walls << " walls, " << tenths / 10.0 << " mm at " << density << ": "
+            << result.verdict.reason;
+      }
+}
+
+TEST(ThinWalls, ScrapsStayWhereNoLineFits) {
+  // Two parts of a wall's region, in a place hardly longer than they are and in a long one.
+  const PlanContext context = test::context_for(2, 1);
+  const double half_mm = context.line_width_mm / 2;
+  const Polygons scraps{{test::rectangle(0, 0, 0.5, 0.0625), {}},
+                        {test::rectangle(1, 0, 1.5, 0.0625), {}}};
+  const auto left = [&](double beyond_mm) {
+    const Polygons place{
+        {test::rectangle(-beyond_mm, -half_mm, 1.5 + beyond_mm, 0.0625 + half_mm), {}}};
+    return without_scraps(scraps, place, half_mm, 0.25, context).size();
+  };
+  EXPECT_EQ(left(half_mm), 2U);
+  EXPECT_EQ(left(10), 0U);
 }
 
 TEST(ThinWalls, NoBeadInsideAThirdOfAMillimetreHoldsEnough) {

@@ -21,6 +21,9 @@ namespace {
 
 constexpr double kLeastShare = 0.7;
 constexpr double kReachDistances = 2.5;  // of the average, in line distances
+// Cells that are no smaller than a line distance, as on layers of metres, hold now more and now
+// fewer lines: the average has to even that out.
+constexpr double kLeastReachCells = 3;
 
 /// A box of samples: columns and rows, from the first to before the end.
 struct SampleBox {
@@ -141,7 +144,7 @@ class PartLedger {
   [[nodiscard]] double skipped_area_mm2() const {
     const auto cell_mm = grid_.pitch_mm() * static_cast<double>(cell_steps_);
     const auto reach = static_cast<std::size_t>(
-        std::max(1.0, std::round(kReachDistances * line_distance_mm_ / cell_mm)));
+        std::max(kLeastReachCells, std::round(kReachDistances * line_distance_mm_ / cell_mm)));
     NeighbourhoodMeans demanded(demanded_, reach, wanted_);
     NeighbourhoodMeans laid(laid_, reach, wanted_);
     double skipped = 0;

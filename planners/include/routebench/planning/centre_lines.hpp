@@ -24,11 +24,11 @@ struct CentreLineRule {
 };
 
 /// Strokes along the middle of narrow polygons. Each has one width, so a line is cut where its
-/// width changes by more than a quarter; the pieces meet. So do the arms of a fork. Spurs into
-/// corners are left out, and a line ends half its width before the end of its part. A compact part,
-/// no longer than two of the greatest widths, gets about the largest inscribed stroke on its long
-/// axis, if strokes are inscribed. A dot is as
-/// short a stroke as fits beside its own width.
+/// width changes by more than a quarter, in long pieces by less; the pieces meet. So do the arms of
+/// a fork. Spurs into corners are left out, and a line ends half its width before the end of its
+/// part. A compact part, no longer than two of the greatest widths, gets about the largest
+/// inscribed stroke on its long axis, if strokes are inscribed. A dot is as short a stroke as fits
+/// beside its own width.
 ///
 /// Takes   polygons on the grid, in any frame: moving them moves the strokes by just that.
 /// Returns strokes inside the polygons, on the grid, in an order of no meaning.

@@ -56,6 +56,17 @@ namespace routebench {
 [[nodiscard]] Polygons without_strips(Polygons region, double reach_mm, double near_mm,
                                       const PlanContext& context);
 
+/// A wall's region without its scraps: parts narrower than near_mm that are short only because
+/// what they lie in is hardly wider than the wall's reach on both sides, here and there. One line
+/// that runs on through all of that place serves them better than a wall there and back round each.
+/// Scraps in places too short for a line stay.
+///
+/// Takes   what a wall's centre line encloses, what comes before it (the outline or a wall), and
+///         how far the wall reaches beyond its centre line.
+/// Cost    linear where no part is narrow; else an offset and a Boolean operation.
+[[nodiscard]] Polygons without_scraps(Polygons region, const Polygons& before, double reach_mm,
+                                      double near_mm, const PlanContext& context);
+
 /// All rings of polygons: each outer one followed by its holes.
 [[nodiscard]] std::vector<Ring> rings_of(const Polygons& polygons);
 
