@@ -46,11 +46,20 @@ Polygons bare_part(const Polygons& area, const Polygons& laid, double reach_mm) 
   return intersect(offset(cores, kMarginMm), area);
 }
 
+/// The narrowest place between walls that gets a line: below density 1 where that is nearer to what
+/// is demanded than none. Without walls none would leave the place empty.
+double narrowest_between_walls_mm(const RingRule& rule, const PlanContext& context) {
+  return context.density < 1 && context.perimeters > 0
+             ? std::max(rule.min_gap_mm, context.line_distance_mm() / 2)
+             : rule.min_gap_mm;
+}
+
 /// Lines where the region is too narrow for the first loop; their beads may touch its boundary.
 void lay_slivers(const Polygons& bare, const RingRule& rule, const PlanContext& context,
                  Rings& rings) {
   CentreLineRule lines = rule_for(context.line_width_mm + context.spacing_mm, rule, context);
   lines.width = CentreLineWidth::kInscribed;
+  lines.min_width_mm = narrowest_between_walls_mm(rule, context);
   lines.min_length_mm = kShortestInSliver * context.line_width_mm;
   lines.min_dot_mm = kDotInSliver * context.line_width_mm;
   append(centre_lines(bare, lines, context), rings.centre_lines);
@@ -96,9 +105,10 @@ std::vector<Stroke> joined(std::vector<Stroke> strokes) {
 }
 
 /// Lines in the middle of parts up to widest_mm wide, no wider than a line.
-void lay_middles(const Polygons& parts, double widest_mm, bool dots, const RingRule& rule,
-                 const PlanContext& context, Rings& rings) {
+void lay_middles(const Polygons& parts, double widest_mm, bool between_walls, bool dots,
+                 const RingRule& rule, const PlanContext& context, Rings& rings) {
   CentreLineRule lines = rule_for(widest_mm, rule, context);
+  if (between_walls) lines.min_width_mm = narrowest_between_walls_mm(rule, context);
   lines.width = CentreLineWidth::kInscribed;
   lines.min_length_mm = context.line_distance_mm();
   // Elsewhere they are but the corners of loops.
@@ -142,9 +152,12 @@ Rings sparse_rings(const Polygons& polygons, const RingRule& rule, const PlanCon
     const Polygons lost = bare_part(all[i], inside, reach_mm);
     Polygons loops = lost.empty() ? all[i] : intersect(offset(inside, reach_mm), all[i]);
     if (i == 0) lay_slivers(bare_part(polygons, all[i], width_mm / 2), rule, context, rings);
-    lay_middles(offset(lost, width_mm / 2), 2 * reach_mm + width_mm, i == 0 && loops.empty(), rule,
-                context, rings);
-    lay_between(all[i], i + 1 < all.size() ? all[i + 1] : Polygons{}, rule, context, rings);
+    lay_middles(offset(lost, width_mm / 2), 2 * reach_mm + width_mm, i == 0,
+                i == 0 && loops.empty(), rule, context, rings);
+    // The sides of the first loop have no other beside them: they alone are nearer to what is
+    // needed.
+    if (i > 0)
+      lay_between(all[i], i + 1 < all.size() ? all[i + 1] : Polygons{}, rule, context, rings);
     if (!loops.empty()) rings.insets.push_back(std::move(loops));
   }
   return rings;

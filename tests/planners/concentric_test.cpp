@@ -235,22 +235,34 @@ TEST(Concentric, TheSeamIsWhereItIsAskedFor) {
 }
 
 TEST(Concentric, AGapThatWouldBeHalfEmptyGetsALineInTheMiddle) {
-  // The loops' sides are so many line distances apart; two more loops would need two of them.
+  // The inner loop's sides are so many line distances apart; two more loops would need two of them.
   const double apart_mm = kSpacing / 0.2;
-  const auto strokes_of_strip = [&](double gap_in_distances) {
-    const double height = kWidth + gap_in_distances * apart_mm;
-    return plan({{test::rectangle(0, 0, 60, height), {}}}, 0.2, {{"link", word("none")}}).strokes;
+  const auto strokes_of_strip = [&](double gap_in_distances, const ParamSet& more = {}) {
+    const double height = kWidth + (2 + gap_in_distances) * apart_mm;
+    ParamSet params{{"link", word("none")}};
+    params.insert(more.begin(), more.end());
+    return plan({{test::rectangle(0, 0, 60, height), {}}}, 0.2, params).strokes;
   };
-  EXPECT_EQ(strokes_of_strip(1.4).size(), 1U);
+  EXPECT_EQ(strokes_of_strip(1.4).size(), 2U);
   const std::vector<Stroke> strokes = strokes_of_strip(1.8);
-  ASSERT_EQ(strokes.size(), 2U);
+  ASSERT_EQ(strokes.size(), 3U);
   EXPECT_TRUE(is_loop(strokes[0]));
-  EXPECT_FALSE(is_loop(strokes[1]));
-  EXPECT_EQ(strokes[1].width_mm, kWidth);
-  for (const Point2 p : strokes[1].points) EXPECT_NEAR(p.y, (kWidth + 1.8 * apart_mm) / 2, 0.02);
-  EXPECT_EQ(
-      plan({{test::rectangle(0, 0, 60, kWidth + 1.8 * apart_mm), {}}}, 0.2, kLoops).strokes.size(),
-      1U);
+  EXPECT_TRUE(is_loop(strokes[1]));
+  EXPECT_FALSE(is_loop(strokes[2]));
+  EXPECT_EQ(strokes[2].width_mm, kWidth);
+  for (const Point2 p : strokes[2].points) EXPECT_NEAR(p.y, (kWidth + 3.8 * apart_mm) / 2, 0.02);
+  EXPECT_EQ(strokes_of_strip(1.8, kLoops).size(), 2U);
+}
+
+TEST(Concentric, BetweenWallsALineIsLaidWhereThatIsNearerToWhatIsDemandedThanNone) {
+  const double apart_mm = kSpacing / 0.2;
+  const auto lines_in_strip = [&](double width_in_distances, int walls) {
+    const Polygons strip{{test::rectangle(0, 0, 60, width_in_distances * apart_mm), {}}};
+    return test::plan("concentric", layer_of(strip), context_for(walls, 0.2)).strokes.size();
+  };
+  EXPECT_EQ(lines_in_strip(0.45, 2), 0U);
+  EXPECT_EQ(lines_in_strip(0.55, 2), 1U);
+  EXPECT_EQ(lines_in_strip(0.45, 0), 1U);  // else there would be nothing at all
 }
 
 }  // namespace
