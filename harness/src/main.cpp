@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <csignal>
 #include <exception>
 #include <iostream>
 #include <new>
@@ -64,6 +65,9 @@ void check_command(const CLI::App& app, int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  // A file that may not grow any further is an error like a full disk, not the end of the program.
+  // (A handler, not SIG_IGN: what is started from here does not inherit it.)
+  std::signal(SIGXFSZ, [](int) {});
   CLI::App app{"Plan routes for 3D printing and judge them", "routebench"};
   app.set_version_flag("--version", std::string(routebench::kVersion));
   app.require_subcommand(1);
@@ -103,6 +107,9 @@ int main(int argc, char** argv) {
     return complain("out of memory", kExitInternal);
   } catch (const std::exception& error) {
     return complain(std::string("internal error: ") + error.what(), kExitInternal);
+  } catch (...) {
+    return complain("internal error: something was thrown that is no std::exception",
+                    kExitInternal);
   }
   return exit_code;
 }

@@ -1,7 +1,9 @@
 #include "routebench/harness/results.hpp"
 
 #include <gtest/gtest.h>
+#include <signal.h>
 #include <sqlite3.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -313,6 +315,24 @@ int in_another_process(Act&& act) {
   int status = 0;
   waitpid(process, &status, 0);
   return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+}
+
+TEST(Results, WhereThereIsNoRoomNothingIsLeft) {
+  const ScratchDir dir;
+  const fs::path folder = dir.path() / "new" / "out";
+  const auto refused = [&] {
+    signal(SIGXFSZ, SIG_IGN);
+    for (const rlim_t bytes : {0u, 8192u, 16384u}) {
+      const rlimit small{bytes, RLIM_INFINITY};
+      setrlimit(RLIMIT_FSIZE, &small);
+      if (!refusal(folder, "t", Start::kResume)
+               .starts_with((folder / "results.sqlite.new").string() + ": "))
+        return 1;
+    }
+    return 0;
+  };
+  EXPECT_EQ(in_another_process(refused), 0);
+  EXPECT_TRUE(fs::is_empty(dir.path()));
 }
 
 TEST(Results, OneWriterAtATime) {
