@@ -33,7 +33,8 @@ def guarded(work: Callable[[], int], interrupted: str) -> int:
     except PlotError as error:
         return _complain(str(error), EXIT_BAD_INPUT)
     except OSError as error:
-        return _complain(f"{error.filename}: {error.strerror}", EXIT_BAD_INPUT)
+        where = "" if error.filename is None else f"{error.filename}: "
+        return _complain(f"{where}{error.strerror or error}", EXIT_BAD_INPUT)
     except KeyboardInterrupt:
         return _complain(interrupted, EXIT_INTERRUPTED)
     except Exception as error:  # the last resort: still one line

@@ -300,6 +300,23 @@ TEST(Results, WhatIsNoDatabaseIsRefusedWithoutHarm) {
             std::string::npos);
 }
 
+TEST(Results, CellsOfNothingAreRefused) {
+  for (const char* table : {"run", "model", "contender", "setting"}) {
+    const ScratchDir dir;
+    const fs::path file = database_with_a_cell(dir.path());
+    execute(file, std::string("PRAGMA foreign_keys = OFF; DELETE FROM ") + table);
+    const std::string why = file.string() + ": is damaged: a cell names a run, model, contender or "
+                                            "setting that is not there";
+    EXPECT_EQ(refusal(dir.path(), "t", Start::kResume), why) << table;
+    try {
+      static_cast<void>(current_cells(file));
+      FAIL() << table;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.what(), why) << table;
+    }
+  }
+}
+
 TEST(Results, AFolderThatCannotBeMadeIsNamed) {
   const ScratchDir dir;
   dir.write("file", "");
