@@ -43,12 +43,18 @@ def guarded(work: Callable[[], int], interrupted: str) -> int:
 
 def write_out(data: bytes) -> None:
     """Data for stdout; whoever reads it may stop before its end."""
+    if sys.stdout is None:
+        raise PlotError("standard output: cannot be written: it is closed")
     try:
         sys.stdout.buffer.write(data)
         sys.stdout.flush()
-    except BrokenPipeError:
+    except OSError as error:
         # Python would complain about it once more at its own end.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        if not isinstance(error, BrokenPipeError):
+            raise PlotError(
+                f"standard output: cannot be written: {error.strerror}"
+            ) from error
 
 
 def _complain(message: str, exit_code: int) -> int:

@@ -19,6 +19,7 @@ namespace {
 
 constexpr int kExitBadInput = 2;
 constexpr int kExitInternal = 3;
+constexpr const char* kNoOutput = "standard output: cannot be written";
 
 int complain(const std::string& message, int exit_code) {
   std::cerr << "routebench: " << routebench::one_line(message) << '\n';
@@ -96,9 +97,12 @@ int main(int argc, char** argv) {
   try {
     check_command(app, argc, argv);
     app.parse(argc, argv);
-    if (!std::cout.flush()) return complain("standard output: cannot be written", kExitBadInput);
+    if (!std::cout.flush()) return complain(kNoOutput, kExitBadInput);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    if (error.get_exit_code() == 0) {  // --help, --version
+      app.exit(error);
+      return std::cout.flush() ? 0 : complain(kNoOutput, kExitBadInput);
+    }
     return complain(explain(app, error), kExitBadInput);
   } catch (const routebench::Error& error) {
     return complain(error.what(), error.kind() == routebench::ErrorKind::kInternal ? kExitInternal
