@@ -33,7 +33,8 @@ def guarded(work: Callable[[], int], interrupted: str) -> int:
     except PlotError as error:
         return _complain(str(error), EXIT_BAD_INPUT)
     except OSError as error:
-        return _complain(f"{error.filename}: {error.strerror}", EXIT_BAD_INPUT)
+        where = "" if error.filename is None else f"{error.filename}: "
+        return _complain(f"{where}{error.strerror or error}", EXIT_BAD_INPUT)
     except KeyboardInterrupt:
         return _complain(interrupted, EXIT_INTERRUPTED)
     except Exception as error:  # the last resort: still one line
@@ -42,12 +43,18 @@ def guarded(work: Callable[[], int], interrupted: str) -> int:
 
 def write_out(data: bytes) -> None:
     """Data for stdout; whoever reads it may stop before its end."""
+    if sys.stdout is None:
+        raise PlotError("standard output: cannot be written: it is closed")
     try:
         sys.stdout.buffer.write(data)
         sys.stdout.flush()
-    except BrokenPipeError:
+    except OSError as error:
         # Python would complain about it once more at its own end.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        if not isinstance(error, BrokenPipeError):
+            raise PlotError(
+                f"standard output: cannot be written: {error.strerror}"
+            ) from error
 
 
 def _complain(message: str, exit_code: int) -> int:

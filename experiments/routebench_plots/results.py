@@ -105,6 +105,11 @@ class Results:
         self.database = database
         self._file = Database(database)
         try:
+            if self._file.query("PRAGMA foreign_key_check(cell)"):
+                raise PlotError(
+                    f"{database}: is damaged: a cell names a run, model, contender or "
+                    "setting that is not there"
+                )
             self._slots, self.earlier_cells = self._read_slots()
             self.experiment = self._read_experiment()
             self.metrics = self._read_metrics()

@@ -28,6 +28,10 @@ _FARTHEST_MM = (2**31 - 1) * QUANTUM_MM / 2
 """Differences of coordinates up to this fit into a number of a block."""
 
 
+class TooFarError(PlotError):
+    """A length that does not fit into a block."""
+
+
 @dataclass(frozen=True)
 class LayerStrokes:
     """The route of a layer."""
@@ -137,7 +141,7 @@ def _joined(*parts: Sequence[int] | NDArray[np.int64] | bytes) -> bytes:
 def _quantised(lengths_mm: Sequence[float] | Points) -> NDArray[np.int64]:
     values = np.asarray(lengths_mm, dtype=np.float64)
     if values.size and not np.abs(values).max() <= _FARTHEST_MM:
-        raise PlotError(
+        raise TooFarError(
             f"a length or coordinate is beyond {_FARTHEST_MM / 1e3:.0f} m: "
             "too far for the route viewer"
         )

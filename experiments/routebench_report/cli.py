@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import os
 import re
 import shutil
@@ -148,14 +149,24 @@ def _write(out: Path, text: str) -> None:
     """All of the page or nothing: it takes its name when it is whole."""
     if out.is_dir():
         raise PlotError(f"{out}: is a folder; --out names the file")
+    missing = [place for place in out.absolute().parents if not place.exists()]
     try:
-        out.parent.mkdir(parents=True, exist_ok=True)
-        handle, name = tempfile.mkstemp(prefix=".page-", dir=out.parent)
-    except OSError as error:
+        _write_whole(out, text)
+    except BaseException as error:
+        for folder in missing:
+            with contextlib.suppress(OSError):
+                folder.rmdir()
+        if not isinstance(error, OSError):
+            raise
         raise PlotError(
             f"{out}: cannot write a page there: {error.strerror}; name "
             "another place with --out"
         ) from error
+
+
+def _write_whole(out: Path, text: str) -> None:
+    out.parent.mkdir(parents=True, exist_ok=True)
+    handle, name = tempfile.mkstemp(prefix=".page-", dir=out.parent)
     try:
         with os.fdopen(handle, "w", encoding="utf-8") as stream:
             stream.write(text)

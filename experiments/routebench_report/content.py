@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, TypeVar
 
 from routebench_plots.errors import PlotError
 from routebench_plots.figures import METRICS_OF_INTEREST
@@ -27,12 +27,15 @@ from .blocks import (
     LayerPolygons,
     LayerScores,
     LayerStrokes,
+    TooFarError,
     outline_block,
     packed,
     route_block,
     score_block,
 )
 
+
+_Layer = TypeVar("_Layer", LayerPolygons, LayerStrokes)
 
 _COUNTED_IN_A_FILE = (
     ("travel_mm", "Travel", "mm", "lower", "moves without material"),
@@ -236,8 +239,21 @@ def _add_outlines(results: Results, content: Content) -> None:
                 )
                 for index, z_mm in results.kept_layers(setting, model)
             ]
-            if layers:
-                content.blocks[name] = packed(outline_block(layers))
+            if layers and (block := _fitting(outline_block, layers)):
+                content.blocks[name] = block
+
+
+def _fitting(
+    pack: Callable[[Sequence[_Layer]], bytes], layers: Sequence[_Layer]
+) -> str | None:
+    """Packed layers, unless something of them is too far away to be shown.
+
+    One route that goes astray costs its own picture, not the page.
+    """
+    try:
+        return packed(pack(layers))
+    except TooFarError:
+        return None
 
 
 def _outline_name(
@@ -269,10 +285,10 @@ def _cell(
         "scores": [own.get(metric.name) for metric in results.metrics],
     }
     routes = _routes(results, setting, model, cell)
-    if routes:
+    if routes and (block := _fitting(route_block, routes)):
         made["kept"] = len(routes)
         made["route"] = f"route-{cell.cell_id}"
-        content.blocks[made["route"]] = packed(route_block(routes))
+        content.blocks[made["route"]] = block
     scores = _layer_scores(results, cell)
     if scores:
         made["layers"] = f"layers-{cell.cell_id}"

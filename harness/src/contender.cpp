@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cfenv>
 #include <cmath>
 #include <exception>
 #include <new>
@@ -23,9 +24,9 @@ constexpr std::array<std::string_view, 3> kKindNames = {"wall", "dense", "sparse
 constexpr double kFarthestMm = 1e6;
 constexpr double kWidestMm = 1e3;
 
-std::unique_ptr<const Planner> make_planner(const SlotSpec& slot, PlannerRole role,
-                                            const std::string& contender, const Registry& registry,
-                                            ParamSet& resolved, int& repeats_every) {
+std::unique_ptr<const Contender::Slot> checked_slot(const SlotSpec& slot, PlannerRole role,
+                                                    const std::string& contender,
+                                                    const Registry& registry) {
   const Registry::Entry& entry = registry.at(slot.planner);
   if (entry.info.role != role) {
     std::string known;
@@ -37,9 +38,11 @@ std::unique_ptr<const Planner> make_planner(const SlotSpec& slot, PlannerRole ro
                     std::string(to_string(entry.info.role)) +
                     ", or take one of: " + (known.empty() ? "(none is registered)" : known));
   }
-  resolved = entry.resolve(slot.params);
-  repeats_every = entry.info.repeats_every;
-  return entry.make(slot.params);
+  return std::unique_ptr<const Contender::Slot>(new Contender::Slot{
+      .name = slot.planner,
+      .params = entry.resolve(slot.params),
+      .repeats_every = entry.info.repeats_every,
+      .make = [make = entry.make, given = slot.params] { return make(given); }});
 }
 
 /// Spreads the seed of a run over its layers (finaliser of splitmix64: every bit of the input moves
@@ -76,6 +79,19 @@ std::string fault_of(const Route& route) {
   return {};
 }
 
+/// Keeps how numbers are rounded, and which operations trap, as it was: a planner that changes it
+/// must not change what the judge finds.
+class KeptArithmetic {
+ public:
+  KeptArithmetic() { std::fegetenv(&before_); }
+  ~KeptArithmetic() { std::fesetenv(&before_); }
+  KeptArithmetic(const KeptArithmetic&) = delete;
+  KeptArithmetic& operator=(const KeptArithmetic&) = delete;
+
+ private:
+  std::fenv_t before_{};
+};
+
 /// Puts one layer's route together, call by call.
 class LayerAssembly {
  public:
@@ -84,21 +100,20 @@ class LayerAssembly {
       : layer_(layer), task_(task), context_(std::move(context)), memo_(memo), timed_(timed) {}
 
   /// Has one planner lay a region from where the nozzle is, and appends its route.
-  void lay(const Planner* planner, const std::string& name, int repeats_every, StrokeKind kind,
-           Polygons region) {
-    if (planner == nullptr || region.empty()) return;
+  void lay(const Contender::Slot* slot, StrokeKind kind, Polygons region) {
+    if (slot == nullptr || region.empty()) return;
     stop_if_asked(context_);
     const Layer part{layer_.index,      layer_.z_mm, layer_.height_mm,
                      std::move(region), {},          layer_.repaired};
     context_.density = kind == StrokeKind::kSparse ? task_.density : 1;
-    if (memo_ == nullptr || repeats_every == 0) {
-      append(kind, sound_plan(*planner, name, part), nullptr);
+    if (memo_ == nullptr || slot->repeats_every == 0) {
+      append(kind, sound_plan(*slot, part), nullptr);
       return;
     }
-    const PlanMemo::Question question{planner, part.index % repeats_every, part.height_mm,
+    const PlanMemo::Question question{slot, part.index % slot->repeats_every, part.height_mm,
                                       context_.start, context_.density};
     const std::shared_ptr<const Route> known =
-        memo_->route(question, part.polygons, [&] { return sound_plan(*planner, name, part); });
+        memo_->route(question, part.polygons, [&] { return sound_plan(*slot, part); });
     append(kind, *known, known);
   }
 
@@ -115,14 +130,17 @@ class LayerAssembly {
               std::back_inserter(planned_.route.strokes));
   }
 
-  Route sound_plan(const Planner& planner, const std::string& name, const Layer& part) {
-    Route route = plan_part(planner, name, part);
-    if (const std::string fault = fault_of(route); !fault.empty()) throw failure(name, fault);
+  Route sound_plan(const Contender::Slot& slot, const Layer& part) {
+    Route route = plan_part(slot, part);
+    if (const std::string fault = fault_of(route); !fault.empty()) throw failure(slot.name, fault);
     return route;
   }
 
-  Route plan_part(const Planner& planner, const std::string& name, const Layer& part) {
+  Route plan_part(const Contender::Slot& slot, const Layer& part) {
+    const std::string& name = slot.name;
+    const KeptArithmetic kept;
     try {
+      const Planner& planner = slot.planner();
       if (!timed_) return planner.plan(part, context_);
       PlanTime time;
       Route route = timed_plan(planner, part, context_, time);
@@ -195,17 +213,13 @@ Contender::Contender(ContenderSpec spec, const Registry& registry) : spec_(std::
     throw Error(ErrorKind::kBadInput,
                 (spec_.name.empty() ? "the contender" : "contender " + spec_.name + ": it") +
                     " has no planner; give it a shell, a fill or both");
-  if (spec_.shell)
-    shell_ = make_planner(*spec_.shell, PlannerRole::kShell, spec_.name, registry, shell_params_,
-                          shell_repeats_every_);
-  if (spec_.fill)
-    fill_ = make_planner(*spec_.fill, PlannerRole::kFill, spec_.name, registry, fill_params_,
-                         fill_repeats_every_);
+  if (spec_.shell) shell_ = checked_slot(*spec_.shell, PlannerRole::kShell, spec_.name, registry);
+  if (spec_.fill) fill_ = checked_slot(*spec_.fill, PlannerRole::kFill, spec_.name, registry);
 }
 
 double Contender::peak_rss_bytes() const {
-  return std::max(routebench::peak_rss_bytes(shell_.get()),
-                  routebench::peak_rss_bytes(fill_.get()));
+  return std::max(routebench::peak_rss_bytes(shell_ ? shell_->made.get() : nullptr),
+                  routebench::peak_rss_bytes(fill_ ? fill_->made.get() : nullptr));
 }
 
 PlannedLayer Contender::plan(const Layer& layer, const Demand& demand, const Task& task,
@@ -221,15 +235,10 @@ PlannedLayer Contender::plan(const Layer& layer, const Demand& demand, const Tas
   context.stop = std::move(stop);
   LayerAssembly assembly(layer, task, std::move(context), memo, timed);
 
-  const std::string shell_name = spec_.shell ? spec_.shell->planner : std::string();
-  const std::string fill_name = spec_.fill ? spec_.fill->planner : std::string();
   const auto lay = [&](IslandWork work) {
-    assembly.lay(shell_.get(), shell_name, shell_repeats_every_, StrokeKind::kWall,
-                 std::move(work.walls));
-    assembly.lay(fill_.get(), fill_name, fill_repeats_every_, StrokeKind::kDense,
-                 std::move(work.dense));
-    assembly.lay(fill_.get(), fill_name, fill_repeats_every_, StrokeKind::kSparse,
-                 std::move(work.sparse));
+    assembly.lay(shell_.get(), StrokeKind::kWall, std::move(work.walls));
+    assembly.lay(fill_.get(), StrokeKind::kDense, std::move(work.dense));
+    assembly.lay(fill_.get(), StrokeKind::kSparse, std::move(work.sparse));
   };
   const Polygons walls = shell_ && task.perimeters > 0 ? demand.outline : Polygons{};
   const Polygons dense = fill_ ? demand.dense : Polygons{};

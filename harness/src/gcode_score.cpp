@@ -99,6 +99,20 @@ std::string unpaired_text(const GcodePrint& print, const LayerPairs& pairs) {
          to_string(ParamValue(print.layers[pairs.unpaired.front()].z_mm)) + " mm";
 }
 
+/// A volume as a message shows it.
+std::string rounded(double mm3) { return to_string(ParamValue(std::round(1e3 * mm3) / 1e3)); }
+
+/// Whether a file's E tells another story than its marks, in one line.
+std::string contradiction_text(const PlacedPrint& placed, const GateLimits& gate) {
+  if (!placed.marked_mm3) return {};
+  const double by_marks_mm3 = *placed.marked_mm3;
+  if (placed.filament_mm3 >= gate.deposit_min * by_marks_mm3 &&
+      placed.filament_mm3 <= gate.deposit_max * by_marks_mm3)
+    return {};
+  return "its E makes " + rounded(placed.filament_mm3) + " mm3 of material, its marks of widths " +
+         rounded(by_marks_mm3) + " mm3";
+}
+
 /// Takes metrics out of a cell's scores.
 void forget(JudgedCell& cell, std::span<const std::string_view> metrics) {
   for (const std::string_view metric : metrics) {
@@ -179,6 +193,8 @@ PlacedPrint place_print(const GcodePrint& print, const PreparedModel& model,
       offset_mm ? *offset_mm : offset_to_model(layers, print.layers, placed.pairs, line_width_mm);
   placed.unpaired = unpaired_text(print, placed.pairs);
   placed.stated_time_s = print.stated_time_s;
+  placed.filament_mm3 = print.filament_mm3;
+  if (print.filament_is_known) placed.marked_mm3 = print.marked_mm3;
   placed.layers.resize(chosen.size());
   parallel_for(chosen.size(), [&](std::size_t i) {
     const std::optional<std::size_t> pair = placed.pairs.file_layers[chosen[i]];
@@ -197,10 +213,12 @@ JudgedCell judge_print(const Judge& judge, const PreparedModel& model,
   JudgedCell cell = judge_layers(judge, model, chosen, placed.layers, parallel_for);
   forget(cell, kPlanMetrics);
   cell.totals.at(metric_index("stated_time_s")) = placed.stated_time_s;
-  if (!placed.pairs.unpaired.empty()) {
+  for (const std::string& complaint :
+       {placed.unpaired, contradiction_text(placed, judge.task().gate)}) {
+    if (complaint.empty()) continue;
     cell.verdict.outcome = Outcome::kOffTask;
     std::string& reason = cell.verdict.reason;
-    reason += (reason.empty() ? "" : "; ") + placed.unpaired;
+    reason += (reason.empty() ? "" : "; ") + complaint;
   }
   return cell;
 }

@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <csignal>
 #include <exception>
 #include <iostream>
 #include <new>
@@ -18,6 +19,7 @@ namespace {
 
 constexpr int kExitBadInput = 2;
 constexpr int kExitInternal = 3;
+constexpr const char* kNoOutput = "standard output: cannot be written";
 
 int complain(const std::string& message, int exit_code) {
   std::cerr << "routebench: " << routebench::one_line(message) << '\n';
@@ -78,6 +80,9 @@ void check_command(const CLI::App& app, int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  // A file that may not grow any further is an error like a full disk, not the end of the program.
+  // (A handler, not SIG_IGN: what is started from here does not inherit it.)
+  std::signal(SIGXFSZ, [](int) {});
   CLI::App app{"Plan routes for 3D printing and judge them", "routebench"};
   app.set_version_flag("--version", std::string(routebench::kVersion));
   app.require_subcommand(1);
@@ -106,9 +111,12 @@ int main(int argc, char** argv) {
   try {
     check_command(app, argc, argv);
     app.parse(argc, argv);
-    if (!std::cout.flush()) return complain("standard output: cannot be written", kExitBadInput);
+    if (!std::cout.flush()) return complain(kNoOutput, kExitBadInput);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    if (error.get_exit_code() == 0) {  // --help, --version
+      app.exit(error);
+      return std::cout.flush() ? 0 : complain(kNoOutput, kExitBadInput);
+    }
     return complain(explain(app, error), kExitBadInput);
   } catch (const routebench::Error& error) {
     return complain(error.what(), error.kind() == routebench::ErrorKind::kInternal ? kExitInternal
@@ -117,6 +125,9 @@ int main(int argc, char** argv) {
     return complain("out of memory", kExitInternal);
   } catch (const std::exception& error) {
     return complain(std::string("internal error: ") + error.what(), kExitInternal);
+  } catch (...) {
+    return complain("internal error: something was thrown that is no std::exception",
+                    kExitInternal);
   }
   return exit_code;
 }

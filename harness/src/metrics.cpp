@@ -48,8 +48,10 @@ constexpr std::array kMetrics{
         "area of beads more than half a line outside the polygons, as a share of their area"},
     MetricInfo{"outline_covered", "Outline covered", "", kHigher, kOutline,
                "share of the boundary within a line width of a stroke"},
-    MetricInfo{"hollow_mm", "Hollow strokes", "mm", kLower, kSum,
-               "length of strokes whose centre line lies outside the polygons"},
+    MetricInfo{
+        "hollow_mm", "Hollow strokes", "mm", kLower, kSum,
+        "length of strokes whose centre line lies outside the polygons or that are thinner than "
+        "a tenth of a line"},
     MetricInfo{"sharp_turns", "Sharp turns", "", kLower, kSum,
                "turns of more than 90 degrees inside strokes"},
     MetricInfo{"filament_mm3", "Material", "mm3", kNeither, kSum, "deposited volume"},

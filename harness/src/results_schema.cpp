@@ -185,6 +185,9 @@ void require_our_schema(Database& database) {
     refuse(database, "has schema version " + version + ", but this program writes and reads " +
                          std::to_string(kResultsSchemaVersion) +
                          "; run with --fresh to start anew, or with --out for another folder");
+  if (Statement(database, "PRAGMA foreign_key_check(cell)").next())
+    refuse(database,
+           "is damaged: a cell names a run, model, contender or setting that is not there");
   Statement names(database, "SELECT name FROM metric ORDER BY position");
   bool same = true;
   for (const MetricInfo& metric : metric_table())

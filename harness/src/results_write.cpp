@@ -6,6 +6,7 @@
 #include "results_schema.hpp"
 #include "routebench/geometry/error.hpp"
 #include "routebench/geometry/layer_io.hpp"
+#include "routebench/harness/output.hpp"
 #include "routebench/harness/results.hpp"
 #include "run_lock.hpp"
 #include "sqlite.hpp"
@@ -15,21 +16,35 @@ namespace {
 
 namespace fs = std::filesystem;
 
-fs::path made_folder(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error)
-    throw Error(ErrorKind::kBadInput,
-                folder.string() + ": the folder cannot be made: " + error.message());
-  return folder;
-}
-
 /// The file that SQLite keeps beside a database while it writes.
 fs::path journal_of(const fs::path& file) { return file.string() + "-journal"; }
 
 void remove_database(const fs::path& file) {
   fs::remove(journal_of(file));
   fs::remove(file);
+}
+
+/// A database that is not in its place yet; it is removed unless it gets there.
+struct Unpublished {
+  fs::path file;  ///< empty if there is none
+
+  Unpublished() = default;
+  Unpublished(const Unpublished&) = delete;
+  Unpublished& operator=(const Unpublished&) = delete;
+  ~Unpublished() {
+    if (file.empty()) return;
+    std::error_code ignored;
+    fs::remove(journal_of(file), ignored);
+    fs::remove(file, ignored);
+  }
+};
+
+/// Makes a folder and those above it. Returns those that were not there, which go again if they are
+/// still empty in the end and were not committed.
+std::unique_ptr<OutputSet> made_folders(const fs::path& folder) {
+  auto made = std::make_unique<OutputSet>();
+  made->add_folder(folder);
+  return made;
 }
 
 void configure(Database& database) {
@@ -59,7 +74,10 @@ std::string wkt_of(const Layer& layer) {
 
 struct ResultsWriter::Impl {
   Impl(const fs::path& folder_in, const std::string& experiment, Start start)
-      : folder(made_folder(folder_in)), lock(folder), file(folder / kResultsFileName) {
+      : folder(folder_in),
+        made(made_folders(folder)),
+        lock(folder),
+        file(folder / kResultsFileName) {
     if (fs::exists(file)) {
       Database old(file, OpenMode::kExisting);
       require_experiment(old, experiment);
@@ -70,33 +88,24 @@ struct ResultsWriter::Impl {
     // run that is stopped early leaves neither an empty file nor the loss of an old one.
     const fs::path beside = file.string() + ".new";
     remove_database(beside);  // of a run that was killed
-    written = resume ? file : beside;
-    database = std::make_unique<Database>(written, OpenMode::kCreate);
+    if (!resume) unpublished.file = beside;
+    database = std::make_unique<Database>(resume ? file : beside, OpenMode::kCreate);
     configure(*database);
     if (!resume) create_schema(*database, experiment);
-  }
-
-  ~Impl() {
-    const bool published = written == file;
-    database.reset();
-    std::error_code ignored;
-    if (!published) {
-      fs::remove(journal_of(written), ignored);
-      fs::remove(written, ignored);
-    }
   }
 
   /// Moves a new database to its place. SQLite finds the journal of an interrupted write by the
   /// file's name, so the file is closed while it moves, and the old file's journal goes first.
   void publish() {
-    if (written == file) return;
+    if (unpublished.file.empty()) return;
     database.reset();
     if (fs::exists(file)) {
       Database(file, OpenMode::kReadOnly);  // undoes an interrupted write
       fs::remove(journal_of(file));
     }
-    fs::rename(written, file);
-    written = file;
+    fs::rename(unpublished.file, file);
+    unpublished.file.clear();
+    made->commit();
     database = std::make_unique<Database>(file, OpenMode::kExisting);
     configure(*database);
   }
@@ -108,10 +117,12 @@ struct ResultsWriter::Impl {
   void add_sample(std::int64_t cell_id, const TimingSample& sample);
   void drop_cell_at_limit(const std::string& cell_key);
 
+  // In this order: what is made last goes first.
   fs::path folder;
+  std::unique_ptr<OutputSet> made;
   RunLock lock;
   fs::path file;
-  fs::path written;
+  Unpublished unpublished;
   std::unique_ptr<Database> database;
   std::int64_t run_id = 0;
 };

@@ -66,6 +66,14 @@ class PlotCommandTest(unittest.TestCase):
         for file in files:
             self.assertTrue(file.is_file(), file)
 
+    def test_output_that_goes_nowhere_is_told_in_one_line(self) -> None:
+        place = self.results("r")
+        words = f"'{self.program}' gate {place} {place}"
+        for where in (">&-", ">/dev/full"):
+            with self.subTest(where=where):
+                done = self.run_program("sh", "-c", f"{words} {where}")
+                self.assert_refused(done, "standard output: cannot be written: ")
+
     def test_refuses_what_is_not_there(self) -> None:
         absent = self.folder / "absent"
         done = self.run_program(self.program, "plot", absent)

@@ -194,13 +194,41 @@ class ReportTest(PageTestCase):
                 self.assert_refused(*self.call(*words), why)
         self.assertEqual(list(empty.iterdir()), [])
 
-    def test_broken_strokes_are_named(self) -> None:
-        place = self.results(["m"], ["a", "b"])
+    def change(self, sql: str) -> None:
+        """Does to the results what no program would."""
         with contextlib.closing(
             sqlite3.connect(self.folder / "results.sqlite")
         ) as connection:
-            connection.execute("UPDATE route SET strokes_json = '[{]'")
+            connection.execute(sql)
             connection.commit()
+
+    def test_a_route_that_goes_astray_costs_its_own_picture(self) -> None:
+        place = self.results(["m"], ["a", "b"])
+        kept = self.make("report", place).count('"kept":')
+        self.change(
+            "UPDATE route SET strokes_json = '[{\"kind\": \"wall\", \"width_mm\": 0.4, "
+            "\"points\": [[0, 0], [9e5, 0]]}]' WHERE cell_id = 1"
+        )
+        self.assertEqual(self.make("report", place).count('"kept":'), kept - 1)
+
+    def test_cells_of_nothing_are_refused(self) -> None:
+        place = self.results(["m"], ["a", "b"])
+        self.change("UPDATE cell SET model_id = 99")
+        self.assert_refused(*self.call("report", place), "results.sqlite: is damaged")
+
+    def test_where_there_is_no_room_nothing_is_left(self) -> None:
+        place = self.results(["m"], ["a", "b"])
+        out = self.folder / "new" / "page.html"
+        with mock.patch.object(os, "replace", side_effect=OSError(28, "No space left")):
+            self.assert_refused(
+                *self.call("report", f"--out={out}", place),
+                f"{out}: cannot write a page there: No space left",
+            )
+        self.assertFalse(out.parent.exists())
+
+    def test_broken_strokes_are_named(self) -> None:
+        place = self.results(["m"], ["a", "b"])
+        self.change("UPDATE route SET strokes_json = '[{]'")
         self.assert_refused(
             *self.call("report", place), "route of cell 1, layer 2: broken strokes"
         )

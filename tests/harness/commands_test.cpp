@@ -1,5 +1,7 @@
 /// The commands slice, planners and doctor, and what all commands have in common.
 
+#include <sys/resource.h>
+
 #include <cmath>
 #include <set>
 
@@ -45,6 +47,19 @@ TEST_F(Program, ModelsThatCannotBeReadAreRefusedByName) {
   expect_refused({"slice", in_folder("none.stl")}, "none.stl");
   expect_refused({"slice", "shape:bocks"}, "box");
   expect_refused({"slice", folder_.string()}, folder_.filename().string());
+}
+
+TEST_F(Program, AFileThatMayNotGrowIsAnErrorLikeAFullDisk) {
+  rlimit before{};
+  getrlimit(RLIMIT_FSIZE, &before);
+  const rlimit small{4096, before.rlim_max};
+  setrlimit(RLIMIT_FSIZE, &small);
+  const ProgramRun sliced = call({"slice", "shape:sphere", "--wkt", in_folder("a.wkt")});
+  setrlimit(RLIMIT_FSIZE, &before);
+  EXPECT_EQ(sliced.exit_code, 2) << sliced.err;
+  EXPECT_EQ(sliced.err,
+            "routebench: " + in_folder("a.wkt") + ": cannot be written: File too large\n");
+  EXPECT_TRUE(fs::is_empty(folder_));
 }
 
 class SliceCommand : public test::ProgramTest {};

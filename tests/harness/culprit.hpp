@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cfenv>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -83,36 +84,35 @@ class Culprit final : public Planner {
     kThread,
     kNap,
     kKillSelf,
-    kDiscard
+    kDiscard,
+    kStillborn,
+    kUnborn,
+    kRound,
+    kCurse
   };
   struct Params {
     Crime crime = Crime::kSegfault;
     void bind(ParamBinder& bind) {
-      bind("crime", crime,
-           {{"segfault", Crime::kSegfault},
-            {"abort", Crime::kAbort},
-            {"throw", Crime::kThrow},
-            {"loop", Crime::kLoop},
-            {"hoard", Crime::kHoard},
-            {"nan", Crime::kNan},
-            {"infinite", Crime::kInfinite},
-            {"recurse", Crime::kRecurse},
-            {"leak", Crime::kLeak},
-            {"exit", Crime::kExit},
-            {"chatter", Crime::kChatter},
-            {"close_files", Crime::kCloseFiles},
-            {"skip", Crime::kSkip},
-            {"outside", Crime::kOutside},
-            {"moody", Crime::kMoody},
-            {"thread", Crime::kThread},
-            {"nap", Crime::kNap},
-            {"kill_self", Crime::kKillSelf},
-            {"discard", Crime::kDiscard}},
+      bind("crime", crime, {{"segfault", Crime::kSegfault}, {"abort", Crime::kAbort},
+                            {"throw", Crime::kThrow},       {"loop", Crime::kLoop},
+                            {"hoard", Crime::kHoard},       {"nan", Crime::kNan},
+                            {"infinite", Crime::kInfinite}, {"recurse", Crime::kRecurse},
+                            {"leak", Crime::kLeak},         {"exit", Crime::kExit},
+                            {"chatter", Crime::kChatter},   {"close_files", Crime::kCloseFiles},
+                            {"skip", Crime::kSkip},         {"outside", Crime::kOutside},
+                            {"moody", Crime::kMoody},       {"thread", Crime::kThread},
+                            {"nap", Crime::kNap},           {"kill_self", Crime::kKillSelf},
+                            {"discard", Crime::kDiscard},   {"stillborn", Crime::kStillborn},
+                            {"unborn", Crime::kUnborn},     {"round", Crime::kRound},
+                            {"curse", Crime::kCurse}},
            "what to do");
     }
   };
   static PlannerInfo info() { return {"culprit", PlannerRole::kFill, "misbehaves", ""}; }
-  explicit Culprit(const Params& params) : params_(params) {}
+  explicit Culprit(const Params& params) : params_(params) {
+    if (params_.crime == Crime::kStillborn) std::abort();
+    if (params_.crime == Crime::kUnborn) throw 5;
+  }
 
   [[nodiscard]] Route plan(const Layer& layer, const PlanContext& context) const override {
     Route route = hatch(layer, context, 1, true);
@@ -180,6 +180,14 @@ class Culprit final : public Planner {
         break;
       case Crime::kDiscard:
         return {};
+      case Crime::kRound:
+        std::fesetround(FE_UPWARD);
+        break;
+      case Crime::kCurse:
+        throw std::runtime_error("\x1b[2J\xff" + std::string(1'000'000, 'x'));
+      case Crime::kStillborn:
+      case Crime::kUnborn:
+        break;  // never came to plan
     }
     return route;
   }

@@ -109,6 +109,39 @@ TEST(GcodeReader, EIsAVolumeWhereTheFileSaysSo) {
               10 * section_mm2(0.45) * kFilamentSection, 1e-9);
 }
 
+TEST(GcodeReader, EIsAVolumeInAllOfAFileThatSaysSoAtItsEnd) {
+  const std::string moves = kStart + "G1 X10 E" + number(10 * section_mm2(0.45)) + "\n";
+  const GcodePrint print =
+      read_text(moves + "; use_volumetric_e = 1\n; filament_diameter = 2.85\n");
+  EXPECT_NEAR(print.layers[0].route.strokes[0].width_mm, 0.45, 1e-9);
+  EXPECT_NEAR(print.filament_mm3, 10 * section_mm2(0.45), 1e-9);
+  EXPECT_NEAR(read_text(moves + "; use_volumetric_e = 0\n").filament_mm3,
+              10 * section_mm2(0.45) * kFilamentSection, 1e-9);
+}
+
+TEST(GcodeReader, MarksTellAVolumeOfTheirOwn) {
+  const std::string moves = ";HEIGHT:0.2\n;WIDTH:0.45\nG1 X10 E0.1\n;WIDTH:0\nG1 X20 E0.2\n";
+  const GcodePrint print = read_text(kStart + moves);
+  EXPECT_NEAR(print.marked_mm3, 10 * section_mm2(0.45) + 0.2 * kFilamentSection, 1e-9);
+  EXPECT_TRUE(print.filament_is_known);
+  EXPECT_TRUE(read_text(kStart + moves + "; filament_diameter = 2.85,2.85\n").filament_is_known);
+  const GcodePrint two = read_text(kStart + moves + "; filament_diameter = 1.75,2.85\n");
+  EXPECT_FALSE(two.filament_is_known);
+  EXPECT_TRUE(std::any_of(two.warnings.begin(), two.warnings.end(), [](const std::string& warning) {
+    return warning.find("different diameters") != warning.npos;
+  }));
+}
+
+TEST(GcodeReader, UnknownTypesFillNoScreen) {
+  std::string text = kStart;
+  for (int i = 0; i < 1000; ++i)
+    text += ";TYPE:" + std::to_string(i) + "th\nG1 X" + std::to_string(i + 1) + " E1\n";
+  const std::vector<std::string> warnings = read_text(text).warnings;
+  EXPECT_LE(warnings.size(), 13u);
+  EXPECT_NE(std::find(warnings.begin(), warnings.end(), "1000 unknown types in all"),
+            warnings.end());
+}
+
 TEST(GcodeReader, TheHeightOfALayerIsItsMarkOrItsStep) {
   const auto heights = [](const std::string& text) {
     std::vector<double> result;

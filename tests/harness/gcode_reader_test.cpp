@@ -22,6 +22,7 @@ using test::kFilamentSection;
 using test::kStart;
 using test::Points;
 using test::read_text;
+using test::refusal;
 using test::runs_of;
 
 TEST(GcodeReader, ReadsStrokesAndTravels) {
@@ -217,6 +218,41 @@ TEST(GcodeReader, KlippersNamedCommandsAreIgnored) {
   EXPECT_EQ(runs_of(print), (std::vector<Points>{{{0, 0}, {1, 0}, {2, 0}}}));
   EXPECT_EQ(print.ignored.at("START_PRINT"), 1u);
   EXPECT_EQ(print.ignored.at("T"), 1u);
+}
+
+TEST(GcodeReader, KlippersStatesAreKeptAndBroughtBack) {
+  const std::string print = kStart + "M82\nG92 E7\nG1 X1 E8\n";
+  // What is between must not matter, but where the nozzle is.
+  for (const std::string between :
+       {"G91\nM83\nG1 Z1 E-3\nG0 X8\nG92 X-50 E2\nG1 Z-1 E3\n", "G91\nG0 X5\nG0 X3\n", "G0 X9\n"})
+    EXPECT_EQ(runs_of(read_text(print + "SAVE_GCODE_STATE NAME=here\n" + between +
+                                "restore_gcode_state name=here\nG1 Y5 E9\nG1 X3 E11\n")),
+              (std::vector<Points>{{{0, 0}, {1, 0}}, {{9, 0}, {9, 5}, {3, 5}}}))
+        << between;
+  const GcodePrint moved =
+      read_text(print +
+                "SAVE_GCODE_STATE\nG91\nG0 X3 Y4\nRESTORE_GCODE_STATE MOVE=1 MOVE_SPEED=9\n"
+                "G1 X2 E9\n");
+  EXPECT_EQ(runs_of(moved), (std::vector<Points>{{{0, 0}, {1, 0}, {2, 0}}}));
+  EXPECT_EQ(moved.travel_mm, 10);
+  EXPECT_EQ(refusal(print + "RESTORE_GCODE_STATE NAME=there\n"),
+            "a.gcode:9: the state 'there' has not been saved");
+}
+
+TEST(GcodeReader, WhatIsPulledBackBelongsToItsTool) {
+  const std::string text = kStart + "T0\nG1 X1 E1\nG1 E-10\n";
+  // The other tool's first move pushes as much as the first one's pulled.
+  EXPECT_EQ(runs_of(read_text(text + "T1\nG1 X5 E10\n")),
+            (std::vector<Points>{{{0, 0}, {1, 0}, {5, 0}}}));
+  for (const char* none : {"T0\n", "Tx\n", ""})
+    EXPECT_EQ(runs_of(read_text(text + none + "G1 X5 E10\nG1 X6 E1\n")),
+              (std::vector<Points>{{{0, 0}, {1, 0}}, {{5, 0}, {6, 0}}}))
+        << none;
+}
+
+TEST(GcodeReader, TheMarkOfUtf8IsNoPartOfTheText) {
+  EXPECT_EQ(runs_of(read_text("\xEF\xBB\xBF" + kStart + "G1 X1 E1\n")),
+            (std::vector<Points>{{{0, 0}, {1, 0}}}));
 }
 
 TEST(GcodeReader, LinesMayLieAcrossTheBlocksInWhichAFileIsRead) {

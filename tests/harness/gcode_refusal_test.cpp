@@ -88,11 +88,20 @@ TEST(GcodeReader, MaterialNeedsAPlace) {
 }
 
 TEST(GcodeReader, AFileWithoutMaterialIsRefused) {
-  EXPECT_EQ(refusal(""), "a.gcode: lays no material");
-  EXPECT_EQ(refusal(kStart + "G0 X5\n"), "a.gcode: lays no material");
+  const std::string nothing =
+      "a.gcode: lays no material: no move in X or Y has a word E that pushes filament";
+  EXPECT_EQ(refusal(""), nothing);
+  EXPECT_EQ(refusal(kStart + "G0 X5\nG1 X6 A1\n"), nothing);
   EXPECT_EQ(refusal(kStart + ";TYPE:Skirt\nG1 X5 E1\n"),
             "a.gcode: lays no material that is part of a model");
   EXPECT_NE(refusal("GCDE\x01").find("a.gcode:1: this is binary G-code"), std::string::npos);
+  for (const char* text : {"\x1F\x8B\x08", "PK\x03\x04"})
+    EXPECT_EQ(refusal(text), "a.gcode:1: this is a compressed file; unpack it");
+  for (const std::string& text : {std::string("\xFF\xFEG\0", 4), std::string("\xFE\xFF\0G", 4),
+                                 std::string("\0G\0", 3), std::string("G\0", 2)})
+    EXPECT_EQ(refusal(text),
+              "a.gcode:1: this is UTF-16 or no text at all; G-code is plain text, in ASCII or "
+              "UTF-8");
   EXPECT_NE(refusal(kStart + std::string(3'000'000, ' ')).find("a.gcode:6: the line is longer"),
             std::string::npos);
   EXPECT_THROW(static_cast<void>(read_gcode_file("/no/such.gcode", {})), Error);

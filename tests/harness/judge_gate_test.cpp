@@ -249,6 +249,28 @@ TEST_P(JudgeGate, TravelsExtruded) {
   EXPECT_EQ(*joined.totals[metric_index("travels")], kLayers - 1);
 }
 
+TEST_P(JudgeGate, TravelsHiddenInHairs) {
+  // Too thin to show in any area: only their length tells.
+  for (const double width_mm : {1e-6, task_.line_width_mm / 11}) {
+    double hidden_mm = 0;
+    const Judged hairy = judge(part(), task_, honest, [&](Route& route, int) {
+      Route all;
+      for (Stroke& stroke : route.strokes) {
+        if (!all.strokes.empty()) {
+          const Point2 from = all.strokes.back().points.back(), to = stroke.points.front();
+          hidden_mm += distance(from, to);
+          all.strokes.push_back({{from, to}, width_mm});
+        }
+        all.strokes.push_back(std::move(stroke));
+      }
+      route = std::move(all);
+    });
+    expect_off_task(hairy);
+    EXPECT_EQ(*hairy.totals[metric_index("travels")], kLayers - 1);
+    EXPECT_NEAR(*hairy.totals[metric_index("hollow_mm")], hidden_mm, 1e-3 * hidden_mm);
+  }
+}
+
 TEST_P(JudgeGate, OneLayerOfTwoHundredLeftOut) {
   const std::size_t walls = test::walls(part().outline, task_).strokes.size();
   const Judge judge_of_all(task_, {});

@@ -45,6 +45,17 @@ class ReproduceCommand : public test::ProgramTest {
   fs::path here_;
 };
 
+TEST_F(ReproduceCommand, CellsThatTheConfigDoesNotHaveAreSaid) {
+  ASSERT_EQ(call({"run", "study/t.toml"}).exit_code, 1);
+  test::rows_of(folder_ / "results" / "t" / "results.sqlite", "UPDATE cell SET seed = 77");
+  const ProgramRun again = call({"reproduce", "results/t", "--out", "again"});
+  EXPECT_EQ(again.exit_code, 2);
+  EXPECT_NE(again.err.find("results/t/results.sqlite: its config has none of the cells"),
+            std::string::npos)
+      << again.err;
+  EXPECT_FALSE(fs::exists("again"));
+}
+
 TEST_F(ReproduceCommand, FromAnyFolderTheSameResultsComeOutAgain) {
   ASSERT_EQ(call({"run", "study/t.toml"}).exit_code, 1);
   const fs::path original = folder_ / "results" / "t";

@@ -1,7 +1,9 @@
 #include "routebench/harness/results.hpp"
 
 #include <gtest/gtest.h>
+#include <signal.h>
 #include <sqlite3.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -298,6 +300,23 @@ TEST(Results, WhatIsNoDatabaseIsRefusedWithoutHarm) {
             std::string::npos);
 }
 
+TEST(Results, CellsOfNothingAreRefused) {
+  for (const char* table : {"run", "model", "contender", "setting"}) {
+    const ScratchDir dir;
+    const fs::path file = database_with_a_cell(dir.path());
+    execute(file, std::string("PRAGMA foreign_keys = OFF; DELETE FROM ") + table);
+    const std::string why = file.string() + ": is damaged: a cell names a run, model, contender or "
+                                            "setting that is not there";
+    EXPECT_EQ(refusal(dir.path(), "t", Start::kResume), why) << table;
+    try {
+      static_cast<void>(current_cells(file));
+      FAIL() << table;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.what(), why) << table;
+    }
+  }
+}
+
 TEST(Results, AFolderThatCannotBeMadeIsNamed) {
   const ScratchDir dir;
   dir.write("file", "");
@@ -313,6 +332,24 @@ int in_another_process(Act&& act) {
   int status = 0;
   waitpid(process, &status, 0);
   return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+}
+
+TEST(Results, WhereThereIsNoRoomNothingIsLeft) {
+  const ScratchDir dir;
+  const fs::path folder = dir.path() / "new" / "out";
+  const auto refused = [&] {
+    signal(SIGXFSZ, SIG_IGN);
+    for (const rlim_t bytes : {0u, 8192u, 16384u}) {
+      const rlimit small{bytes, RLIM_INFINITY};
+      setrlimit(RLIMIT_FSIZE, &small);
+      if (!refusal(folder, "t", Start::kResume)
+               .starts_with((folder / "results.sqlite.new").string() + ": "))
+        return 1;
+    }
+    return 0;
+  };
+  EXPECT_EQ(in_another_process(refused), 0);
+  EXPECT_TRUE(fs::is_empty(dir.path()));
 }
 
 TEST(Results, OneWriterAtATime) {

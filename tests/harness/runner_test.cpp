@@ -137,6 +137,25 @@ TEST_P(Crimes, CostTheirOwnCellAndNothingElse) {
   }
 }
 
+TEST_F(Runner, HowAPlannerRoundsDoesNotReachTheJudge) {
+  execute(config(hatch_contender("honest") + culprit_contender("round"), "repetitions = 1", "",
+                 "\"small.wkt\""));
+  const StoredCell honest = cell("honest", "small.wkt"), round = cell("round", "small.wkt");
+  ASSERT_EQ(honest.route_hash, round.route_hash);
+  for (std::size_t i = 0; i < metric_table().size(); ++i)
+    if (is_deterministic(metric_table()[i].name)) {
+      EXPECT_EQ(honest.totals[i], round.totals[i]) << metric_table()[i].name;
+    }
+}
+
+TEST_F(Runner, ReasonsAreShortAndOfPrintableCharacters) {
+  execute(config(culprit_contender("curse"), "repetitions = 1", "", "\"small.wkt\""));
+  const std::string reason = cell("curse", "small.wkt").reason;
+  EXPECT_LT(reason.size(), 5000u);
+  EXPECT_TRUE(
+      std::all_of(reason.begin(), reason.end(), [](char c) { return ' ' <= c && c <= '~'; }));
+}
+
 INSTANTIATE_TEST_SUITE_P(
     All, Crimes,
     testing::Values(
@@ -155,6 +174,9 @@ INSTANTIATE_TEST_SUITE_P(
         Crime{"nap", Outcome::kValid, ""}, Crime{"skip", Outcome::kOffTask, "covered"},
         Crime{"outside", Outcome::kOffTask, "hollow_mm"},
         Crime{"discard", Outcome::kOffTask, "covered"},
+        Crime{"stillborn", Outcome::kCrashed, "SIGABRT while planning layer 0"},
+        Crime{"unborn", Outcome::kFailed, "layer 0: it threw something that is no std::exception"},
+        Crime{"round", Outcome::kValid, ""}, Crime{"curse", Outcome::kFailed, "layer 1: ?[2J?xxx"},
         Crime{"moody", Outcome::kFailed, "not deterministic: repetition"}),
     [](const testing::TestParamInfo<Crime>& crime) { return std::string(crime.param.name); });
 

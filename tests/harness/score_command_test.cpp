@@ -336,6 +336,31 @@ TEST_F(ScoreCommand, ExtrudedTravelsAreCaught) {
   EXPECT_NE(run.json()["reason"].get<std::string>().find("hollow_mm"), std::string::npos);
 }
 
+TEST_F(ScoreCommand, MarksThatEGivesTheLieAreCaught) {
+  planned("shape:box?size=12");
+  const std::string text = test::content_of(in_folder("a.gcode"));
+  const auto scored_with_e = [&](double share) {
+    std::string other;
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line); other += line + "\n") {
+      const std::size_t e = line.find(" E");
+      if (!line.starts_with("G1 X") || e == line.npos) continue;
+      const std::size_t end = std::min(line.find(' ', e + 1), line.size());
+      const double value = std::stod(line.substr(e + 2, end - e - 2));
+      line.replace(e, end - e, " E" + std::to_string(share * value));
+    }
+    write("b.gcode", other);
+    return score({"--model", "shape:box?size=12"}, "b.gcode").json();
+  };
+  for (const double share : {0.9, 1.0, 1.1}) EXPECT_EQ(scored_with_e(share)["outcome"], "valid");
+  for (const double share : {0.01, 0.8, 1.2}) {
+    const json scored = scored_with_e(share);
+    EXPECT_EQ(scored["outcome"], "off_task") << share;
+    EXPECT_TRUE(scored["reason"].get<std::string>().starts_with("its E makes "))
+        << scored["reason"];
+  }
+}
+
 TEST_F(ScoreCommand, BadFilesAndBadUsageAreRefused) {
   expect_refused({"score", in_folder("none.gcode")},
                  "none.gcode: cannot be opened: No such file or directory");

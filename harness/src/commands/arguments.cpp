@@ -237,7 +237,7 @@ std::filesystem::path layer_picture(const std::filesystem::path& folder, int lay
 
 void print_warnings(const std::string& model, const std::vector<std::string>& warnings) {
   for (const std::string& warning : warnings)
-    std::cerr << "routebench: warning: " << model << ": " << warning << '\n';
+    std::cerr << "routebench: warning: " << one_line(model + ": " + warning) << '\n';
 }
 
 void print_refused(const PlannerSet& planners) {

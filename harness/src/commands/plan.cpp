@@ -153,10 +153,10 @@ class Plan {
       plan_with(std::get<Contender>(*source_));
     } catch (const PlannerDied& death) {
       outcome = Outcome::kCrashed;
-      reason = death.what();
+      reason = one_line(death.what());
     } catch (const Error& error) {
       // A planner that breaks its contract is a result like any other.
-      reason = error.what();
+      reason = one_line(error.what());
     }
     if (routes_.size() != chosen_.size()) {
       std::cerr << "routebench: " << arguments_.model << ": " << reason << '\n';

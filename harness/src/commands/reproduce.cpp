@@ -55,6 +55,11 @@ int reproduce(const Arguments& arguments) {
   const RunSummary summary =
       run_experiment(again.config, planners, options, log_of(arguments.progress));
   if (summary.interrupted) return tell_interrupted(summary);
+  std::error_code error;
+  if (!std::filesystem::exists(summary.file, error))
+    throw Error(ErrorKind::kBadInput,
+                original.string() + ": its config has none of the cells that it holds, so nothing "
+                                    "was executed again");
   const Comparison comparison = compare_results(original, summary.file);
   write_to_stdout([&](std::ostream& out) {
     write_comparison(out, comparison);

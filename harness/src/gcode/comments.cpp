@@ -1,5 +1,6 @@
 #include "gcode/comments.hpp"
 
+#include <algorithm>
 #include <optional>
 #include <string>
 
@@ -56,6 +57,21 @@ std::optional<double> duration_s(std::string_view text) {
   return sum_s > 0 ? std::optional(sum_s) : std::nullopt;
 }
 
+/// "1.75,1.75": one for each tool.
+void read_diameters(std::string_view text, PrintBuilder& print) {
+  std::optional<double> first;
+  bool differ = false;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    const std::optional<double> mm = decimal_in(trimmed(text.substr(begin, end - begin)));
+    if (!mm || !(*mm > 0)) return;
+    if (!first) first = mm;
+    differ = differ || *mm != *first;
+    begin = end + 1;
+  }
+  if (first) print.state_filament(*first, differ);
+}
+
 }  // namespace
 
 void read_comment(std::string_view text, const Place& place, PrintBuilder& print,
@@ -76,11 +92,11 @@ void read_comment(std::string_view text, const Place& place, PrintBuilder& print
     if (const std::optional<double> time_s = duration_s(*time)) print.state_time(*time_s);
   } else if (const auto flavour = after("FLAVOR:", text)) {
     if (*flavour == "UltiGCode") machine.use_volumetric_e();
-  } else if (const auto diameter =
+  } else if (const auto volumetric = after("use_volumetric_e =", text)) {
+    if (*volumetric == "1") print.state_volumetric_e();
+  } else if (const auto diameters =
                  after_either("filament_diameter =", "printer.filament_mm =", text)) {
-    // One for each tool; the first is meant.
-    const std::optional<double> mm = decimal_in(trimmed(diameter->substr(0, diameter->find(','))));
-    if (mm && *mm > 0) print.state_filament(*mm);
+    read_diameters(*diameters, print);
   }
 }
 

@@ -1,6 +1,7 @@
 #include "gcode/machine.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -17,9 +18,28 @@ constexpr double kFurthestMm = 1e6;  // a kilometre
 constexpr std::array<char, 3> kAxisWords = {'X', 'Y', 'Z'};
 
 /// G codes that neither move to another place nor change how moves are read: dwelling, the XY
-/// plane, cleaning, parking, probing and levelling.
+/// plane, cleaning, parking, probing, levelling and priming.
 constexpr std::array kHarmless = {4,  12, 17, 26, 27, 29, 30, 31, 32, 33,
-                                  34, 35, 40, 49, 76, 80, 81, 87, 94};
+                                  34, 35, 40, 49, 76, 80, 81, 87, 94, 280};
+
+bool same_word(std::string_view a, std::string_view b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](char x, char y) {
+    return std::toupper(static_cast<unsigned char>(x)) ==
+           std::toupper(static_cast<unsigned char>(y));
+  });
+}
+
+/// The value of "KEY=value" among words; nothing if there is none.
+std::optional<std::string_view> value_of(std::string_view key, std::string_view words) {
+  for (words = trimmed(words); !words.empty(); words = trimmed(words)) {
+    const std::string_view word = words.substr(0, words.find_first_of(" \t"));
+    words.remove_prefix(word.size());
+    const std::size_t equals = word.find('=');
+    if (equals != word.npos && same_word(word.substr(0, equals), key))
+      return word.substr(equals + 1);
+  }
+  return std::nullopt;
+}
 
 }  // namespace
 
@@ -40,7 +60,11 @@ void Machine::execute(const Command& command, const Place& place) {
         return;
       }
       break;
+    case 'T':
+      choose_tool(command.code);
+      break;
     default:
+      if (keep_state(command, place)) return;
       break;
   }
   print_.ignore(command.text);
@@ -111,6 +135,40 @@ void Machine::set_volumetric(const Command& command, const Place& place) {
     volumetric_ = *diameter > 0;
   else if (const std::optional<double> state = command.number('S', place))
     volumetric_ = *state > 0;
+}
+
+void Machine::choose_tool(int tool) {
+  if (tool < 0) return;
+  if (tool_ && *tool_ != tool) {
+    pulled_ = 0;
+    pulled_by_firmware_ = false;
+  }
+  tool_ = tool;
+}
+
+bool Machine::keep_state(const Command& command, const Place& place) {
+  const bool saves = same_word(command.text, "SAVE_GCODE_STATE");
+  if (!saves && !same_word(command.text, "RESTORE_GCODE_STATE")) return false;
+  const std::string name(value_of("NAME", command.rest).value_or("default"));
+  if (saves) {
+    states_.insert_or_assign(name, State{axes_, relative_, relative_e_, e_});
+    return true;
+  }
+  const auto found = states_.find(name);
+  if (found == states_.end()) place.refuse("the state '" + name + "' has not been saved");
+  const State& state = found->second;
+  relative_ = state.relative;
+  relative_e_ = state.relative_e;
+  e_ = state.e;
+  const bool moves = value_of("MOVE", command.rest).value_or("0") != "0";
+  const Point2 from = nozzle();
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    if (!state.axes[i].known) continue;
+    axes_[i].origin_mm = state.axes[i].origin_mm;
+    if (moves) axes_[i].mm = state.axes[i].mm;
+  }
+  if (moves) print_.travel(distance(from, nozzle()));
+  return true;
 }
 
 std::optional<double> Machine::length_mm(const Command& command, char word,

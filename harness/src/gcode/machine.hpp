@@ -2,7 +2,10 @@
 /// What a printer does with commands: modes, position, filament.
 
 #include <array>
+#include <map>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "gcode/place.hpp"
@@ -38,6 +41,9 @@ class Machine {
   void home(const Command& command);
   void set_position(const Command& command, const Place& place);
   void set_volumetric(const Command& command, const Place& place);
+  void choose_tool(int tool);
+  /// Klipper's commands that keep and bring back how moves are read; false for all others.
+  bool keep_state(const Command& command, const Place& place);
 
   /// Length of a word in mm, in the file's units.
   [[nodiscard]] std::optional<double> length_mm(const Command& command, char word,
@@ -65,6 +71,15 @@ class Machine {
   double e_ = 0;       ///< the counter, in the file's units
   double pulled_ = 0;  ///< filament that is pulled back by E
   bool pulled_by_firmware_ = false;
+  std::optional<int> tool_;
+  /// As SAVE_GCODE_STATE kept it.
+  struct State {
+    std::array<Axis, 3> axes;
+    bool relative;
+    bool relative_e;
+    double e;
+  };
+  std::map<std::string, State, std::less<>> states_;
 };
 
 }  // namespace routebench::gcode

@@ -25,13 +25,20 @@ Filament& operator+=(Filament& sum, const Filament& more) {
   return sum;
 }
 
+constexpr double kQuarterPi = std::numbers::pi / 4;
+
 /// Width of a bead, a rectangle with round ends or, where it is narrower than high, an ellipse:
 /// the inverse of Task::mean_width_mm.
 double width_of_bead(double section_mm2, double height_mm) {
   const double mean_mm = section_mm2 / height_mm;
-  constexpr double kQuarterPi = std::numbers::pi / 4;
   return mean_mm >= height_mm * kQuarterPi ? mean_mm + height_mm * (1 - kQuarterPi)
                                            : mean_mm / kQuarterPi;
+}
+
+/// Its inverse.
+double section_of_bead(double width_mm, double height_mm) {
+  return height_mm *
+         (width_mm >= height_mm ? width_mm - height_mm * (1 - kQuarterPi) : width_mm * kQuarterPi);
 }
 
 }  // namespace
@@ -180,6 +187,7 @@ void PrintBuilder::drop_priming() {
 }
 
 double PrintBuilder::volume_mm3(const Filament& filament) const {
+  if (volumetric_e_) return amount(filament);
   const double diameter_mm = filament_mm_.value_or(options_.filament_mm);
   return filament.volume_mm3 +
          filament.length_mm * diameter_mm * diameter_mm * std::numbers::pi / 4;
@@ -206,13 +214,17 @@ void PrintBuilder::set_heights() {
   }
 }
 
-void PrintBuilder::set_widths(RawLayer& layer, Place place) const {
+void PrintBuilder::set_widths(RawLayer& layer, Place place) {
   constexpr double kNarrowestMm = 1e-6;
   constexpr double kWidestMm = 1000;
   for (std::size_t i = 0; i < layer.bodies.size(); ++i) {
     const Body& body = layer.bodies[i];
     double& width_mm = layer.layer.route.strokes[i].width_mm;
-    if (width_mm > 0) continue;
+    if (width_mm > 0) {
+      print_.marked_mm3 += section_of_bead(width_mm, layer.layer.height_mm) * body.length_mm;
+      continue;
+    }
+    print_.marked_mm3 += volume_mm3(body.filament);
     place.line = body.line;
     width_mm = std::max(kNarrowestMm, width_of_bead(volume_mm3(body.filament) / body.length_mm,
                                                     layer.layer.height_mm));
@@ -233,9 +245,18 @@ void PrintBuilder::warn() {
                        " layers, the first at z = " + to_string(ParamValue(first_guessed_z_mm_)) +
                        " mm: it is taken from layer_height_mm = " +
                        to_string(ParamValue(options_.layer_height_mm)));
-  for (const auto& [name, count] : unknown_)
+  constexpr std::size_t kMostTypes = 10;
+  std::size_t shown = 0;
+  for (const auto& [name, count] : unknown_) {
+    if (shown++ == kMostTypes) break;
     warnings.push_back("unknown type '" + name + "', " + std::to_string(count) +
                        " times; its strokes count as part of the model");
+  }
+  if (unknown_.size() > kMostTypes)
+    warnings.push_back(std::to_string(unknown_.size()) + " unknown types in all");
+  if (filaments_differ_)
+    warnings.emplace_back(
+        "its tools have filaments of different diameters; volumes are those of the first");
   if (!type_marks_) warnings.emplace_back("no type marks: all strokes count as part of the model");
 }
 
@@ -243,7 +264,9 @@ GcodePrint PrintBuilder::finish(const Place& end) {
   if (layers_.empty())
     throw Error(ErrorKind::kBadInput,
                 end.name + ": lays no material" +
-                    (print_.excluded_strokes > 0 ? " that is part of a model" : ""));
+                    (print_.excluded_strokes > 0
+                         ? " that is part of a model"
+                         : ": no move in X or Y has a word E that pushes filament"));
   std::stable_sort(layers_.begin(), layers_.end(),
                    [](const RawLayer& a, const RawLayer& b) { return a.z_mm < b.z_mm; });
   print_.z_offset_mm = options_.z_offset_mm;
@@ -254,6 +277,7 @@ GcodePrint PrintBuilder::finish(const Place& end) {
     print_.layers.push_back(std::move(layer.layer));
   }
   print_.filament_mm3 = volume_mm3(pushed_);
+  print_.filament_is_known = !filaments_differ_;
   print_.lines = end.line;
   warn();
   return std::move(print_);

@@ -45,7 +45,13 @@ class PrintBuilder {
   /// Nothing: from now on widths follow from E.
   void mark_width(std::optional<double> width_mm);
   void mark_height(double height_mm);
-  void state_filament(double diameter_mm) { filament_mm_ = diameter_mm; }
+  /// `others_differ`: other tools than the first have filament of another diameter.
+  void state_filament(double diameter_mm, bool others_differ) {
+    filament_mm_ = diameter_mm;
+    filaments_differ_ = others_differ;
+  }
+  /// All E of the file counts mm3, whatever was understood before.
+  void state_volumetric_e() { volumetric_e_ = true; }
   void state_time(double time_s) { print_.stated_time_s = time_s; }
   void ignore(std::string_view command);
 
@@ -80,7 +86,7 @@ class PrintBuilder {
   void warn();
   [[nodiscard]] double volume_mm3(const Filament& filament) const;
   void set_heights();
-  void set_widths(RawLayer& layer, Place place) const;
+  void set_widths(RawLayer& layer, Place place);
 
   static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 
@@ -106,6 +112,8 @@ class PrintBuilder {
   std::optional<double> layer_height_mark_mm_;  ///< the first one after the layer's mark
   bool layer_height_open_ = true;               ///< that one is still to come
   std::optional<double> filament_mm_;
+  bool filaments_differ_ = false;
+  bool volumetric_e_ = false;
   double waiting_travel_mm_ = 0;  ///< since the last stroke; counts if another one follows
   std::size_t waiting_pulls_ = 0;
   Filament pushed_;  ///< by all strokes

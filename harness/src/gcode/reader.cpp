@@ -56,10 +56,20 @@ class Reader {
     return at;
   }
 
+  /// What editors of some systems put before a text is no part of it. Throws for what is no text.
+  void check_beginning(std::string_view& line) {
+    if (line.starts_with("\xEF\xBB\xBF")) line.remove_prefix(3);
+    if (line.starts_with("GCDE")) place_.refuse("this is binary G-code; export it as text");
+    if (line.starts_with("\x1F\x8B") || line.starts_with("PK\x03\x04"))
+      place_.refuse("this is a compressed file; unpack it");
+    if (line.starts_with("\xFF\xFE") || line.starts_with("\xFE\xFF") ||
+        line.substr(0, 2).find('\0') != line.npos)
+      place_.refuse("this is UTF-16 or no text at all; G-code is plain text, in ASCII or UTF-8");
+  }
+
   void read_line(std::string_view line) {
     ++place_.line;
-    if (place_.line == 1 && line.starts_with("GCDE"))
-      place_.refuse("this is binary G-code; export it as text");
+    if (place_.line == 1) check_beginning(line);
     const std::size_t semicolon = line.find(';');
     const std::string_view code = line.substr(0, semicolon);
     gcode::parse_command(code, place_, command_);

@@ -26,7 +26,7 @@ constexpr std::array kTypes = std::to_array<NamedType>({
     {"Solid infill", kDense},
     {"Top solid infill", kDense},
     {"Bridge infill", kDense},
-    {"Ironing", kDense},
+    {"Ironing", kOther},
     {"Internal infill", kSparse},
     {"Skirt", kOther},
     {"Skirt/Brim", kOther},

@@ -97,6 +97,7 @@ class LineParser {
     command_.letter = 'N';
     command_.code = 0;
     command_.text = {at_, letters};
+    command_.rest = {at_ + letters, static_cast<std::size_t>(end_ - at_) - letters};
     constexpr std::array<std::string_view, 7> kFlow = {"while", "elif",     "else", "break",
                                                        "skip",  "continue", "abort"};
     if (std::find(kFlow.begin(), kFlow.end(), command_.text) != kFlow.end())
@@ -120,7 +121,10 @@ class LineParser {
     if (!numbered && letter != 'T')
       place_.refuse(quoted({start, static_cast<std::size_t>(end_ - start)}) +
                     " is not a command: " + letter + " has no number");
-    if (numbered) at_ = stop;
+    if (numbered)
+      at_ = stop;
+    else
+      command_.code = -1;
     if (at_ != end_ && *at_ == '.') {  // G92.1 is not G92
       ++at_;
       while (at_ != end_ && is_digit(*at_)) ++at_;

@@ -15,8 +15,9 @@ namespace routebench::gcode {
 class Command {
  public:
   char letter = 0;        ///< 'G', 'M' or 'T'; 'N' for a command with a name; 0 for an empty line
-  int code = 0;           ///< 1 of G1
+  int code = 0;           ///< 1 of G1; -1 of "G92.1" and of "Tx"
   std::string_view text;  ///< the command itself, as written: "G1", "M104", "SET_FAN_SPEED"
+  std::string_view rest;  ///< what follows a name: " NAME=here MOVE=1"
 
   [[nodiscard]] bool has(char word) const noexcept { return (there_ & bit(word)) != 0; }
   [[nodiscard]] bool has_any() const noexcept { return there_ != 0; }

@@ -3,6 +3,13 @@
 #include "routebench/geometry/vec.hpp"
 
 namespace routebench::judging {
+namespace {
+
+/// Beads that are thinner than this share of a line lay nothing to speak of: they are travels that
+/// call themselves strokes. Planners and slicers lay no gap thinner than a fifth of a line.
+constexpr double kThinnest = 0.1;
+
+}  // namespace
 
 Strays strays_of(const std::vector<Run>& runs, const EdgeGrid& outline, double line_width_mm) {
   Strays strays;
@@ -17,7 +24,10 @@ Strays strays_of(const std::vector<Run>& runs, const EdgeGrid& outline, double l
       else if (!is_inside)
         is_inside = outline.contains(lerp(a, b, 0.5));
       if (width_mm <= 0) continue;
-      if (!is_inside) strays.hollow_mm += outline.outside_length_mm(a, b);
+      if (width_mm < kThinnest * line_width_mm)
+        strays.hollow_mm += distance(a, b);
+      else if (!is_inside)
+        strays.hollow_mm += outline.outside_length_mm(a, b);
       if (!is_inside || width_mm > line_width_mm) strays.beads.push_back({a, b, width_mm});
     }
   }

@@ -20,7 +20,8 @@ struct Strays {
   /// Those of whose centre lines some point lies outside or on the boundary, and those wider than a
   /// line. All of every other bead is inside or less than half a line away from the boundary.
   std::vector<Bead> beads;
-  double hollow_mm = 0;  ///< length of centre lines outside
+  /// Length of centre lines outside, and of beads thinner than a tenth of a line.
+  double hollow_mm = 0;
 };
 
 /// Looks at every bead. Cost of most of them that of asking for the edges near it: a run that has

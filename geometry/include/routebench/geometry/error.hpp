@@ -3,6 +3,7 @@
 
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 namespace routebench {
 
@@ -28,7 +29,9 @@ class Error : public std::runtime_error {
   ErrorKind kind_;
 };
 
-/// A text that may quote anything, with blanks for its line ends: messages are one line.
-[[nodiscard]] std::string one_line(std::string text);
+/// A text that may quote anything, as a message may show it: blanks for its line ends and tabs, '?'
+/// for other control bytes, which terminals obey, and for bytes that are no UTF-8. Ends in dots
+/// after 4000 bytes.
+[[nodiscard]] std::string one_line(std::string_view text);
 
 }  // namespace routebench

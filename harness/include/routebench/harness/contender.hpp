@@ -2,7 +2,9 @@
 /// What is compared: planners with parameters that together print a layer.
 
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <mutex>
 #include <numeric>
 #include <optional>
 #include <stop_token>
@@ -80,6 +82,9 @@ class PlanMemo;
 /// A contender of planners, ready to plan. Immutable; plan() may be called from any thread.
 class Contender {
  public:
+  /// Makes no planner yet: that is done when it first plans, so that what a constructor does wrong
+  /// costs a cell, as what plan() does.
+  ///
   /// Throws Error{kBadInput} for unknown planners, a planner in the wrong slot, bad parameters, or
   /// no slot at all.
   Contender(ContenderSpec spec, const Registry& registry);
@@ -91,10 +96,10 @@ class Contender {
   ///        run: each layer's planners get one that is mixed from it and the layer's index;
   ///        whether to take times: of small islands the clock takes a fiftieth.
   /// Throws Error{kStopped} when asked to stop; Error{kBadInput} naming planner and layer if a
-  ///        planner throws anything else, or returns a stroke of fewer than two points, a
-  ///        coordinate that is not finite or a kilometre away, or a width that is
-  ///        not positive or more than a metre.
-  ///        std::bad_alloc passes as it is; PlannerDied, if a planner's own process has ended.
+  ///        planner or its constructor throws anything else, or it returns a stroke of fewer than
+  ///        two points, a coordinate that is not finite or a kilometre away, or a width that is not
+  ///        positive or more than a metre. std::bad_alloc passes as it is; PlannerDied, if a
+  ///        planner's own process has ended.
   /// Cost   beside the planners' own near-linear in the layer's vertices. With a memo, regions that
   ///        it knows from other layers of the same job cost no planning.
   [[nodiscard]] PlannedLayer plan(const Layer& layer, const Demand& demand, const Task& task,
@@ -108,22 +113,39 @@ class Contender {
   /// After how many layers its planners promise to repeat themselves; 0 if any of them does not.
   /// See PlannerInfo::repeats_every.
   [[nodiscard]] int repeats_every() const {
-    return std::lcm(shell_ ? shell_repeats_every_ : 1, fill_ ? fill_repeats_every_ : 1);
+    return std::lcm(shell_ ? shell_->repeats_every : 1, fill_ ? fill_->repeats_every : 1);
   }
 
   [[nodiscard]] const ContenderSpec& spec() const noexcept { return spec_; }
   /// The slots' parameters, all of them.
-  [[nodiscard]] const ParamSet& shell_params() const noexcept { return shell_params_; }
-  [[nodiscard]] const ParamSet& fill_params() const noexcept { return fill_params_; }
+  [[nodiscard]] const ParamSet& shell_params() const noexcept { return params_of(shell_); }
+  [[nodiscard]] const ParamSet& fill_params() const noexcept { return params_of(fill_); }
+
+  /// A planner that is made when it is first needed, from any thread.
+  struct Slot {
+    std::string name;
+    ParamSet params;        ///< all of them
+    int repeats_every = 0;  ///< see PlannerInfo
+    std::function<std::unique_ptr<const Planner>()> make;
+    mutable std::once_flag once = {};
+    mutable std::unique_ptr<const Planner> made = nullptr;
+
+    /// Throws what the planner's constructor throws.
+    [[nodiscard]] const Planner& planner() const {
+      std::call_once(once, [this] { made = make(); });
+      return *made;
+    }
+  };
 
  private:
+  [[nodiscard]] static const ParamSet& params_of(const std::unique_ptr<const Slot>& slot) {
+    static const ParamSet kNone;
+    return slot ? slot->params : kNone;
+  }
+
   ContenderSpec spec_;
-  ParamSet shell_params_;
-  ParamSet fill_params_;
-  int shell_repeats_every_ = 0;  ///< see PlannerInfo
-  int fill_repeats_every_ = 0;
-  std::unique_ptr<const Planner> shell_;
-  std::unique_ptr<const Planner> fill_;
+  std::unique_ptr<const Slot> shell_;
+  std::unique_ptr<const Slot> fill_;
 };
 
 }  // namespace routebench

@@ -42,6 +42,8 @@ struct GcodePrint {
   std::size_t retractions = 0;  ///< times that filament was pulled back before a stroke
   double travel_mm = 0;         ///< XY length of the moves between strokes, detours included
   double filament_mm3 = 0;      ///< volume by E
+  double marked_mm3 = 0;  ///< the same by the marks of widths and heights, where there are any
+  bool filament_is_known = true;  ///< no other tool has filament of another diameter
 
   /// How long the print takes by the estimate that PrusaSlicer and its kin write into their files.
   std::optional<double> stated_time_s;
@@ -64,7 +66,8 @@ struct GcodePrint {
 /// Retractions. A run of commands that pull filament back counts as one until some is pushed
 /// again; so does G10 until G11 (with a word P, L, R, X, Y or Z it sets offsets or temperatures
 /// and is ignored). A push on the spot ends a retraction, whatever its amount. A move that pushes
-/// with the filament still pulled back lays what exceeds the amount pulled.
+/// with the filament still pulled back lays what exceeds the amount pulled. What is pulled back is
+/// forgotten when another tool is chosen (T): its filament is another one.
 ///
 /// Strokes. Moves that lay material one after another are one stroke as long as kind and width
 /// stay the same. The width is the file's mark (`;WIDTH:`); without one it is that of a bead
@@ -73,7 +76,8 @@ struct GcodePrint {
 /// their layer's (bridges).
 ///
 /// E counts mm of filament, whose diameter is the one that the file states, else that of the
-/// options. It counts mm3 after `;FLAVOR:UltiGCode` and while M200 with a diameter is in force.
+/// options. It counts mm3 after `;FLAVOR:UltiGCode` and while M200 with a diameter is in force, and
+/// in all of a file that says `; use_volumetric_e = 1`.
 ///
 /// Layers are heights at which material is laid. Material within 0.005 mm of a layer belongs to it,
 /// also when the nozzle comes back later; then a warning says so. Where Z climbs while material is
@@ -83,16 +87,17 @@ struct GcodePrint {
 /// say. A warning tells so if that goes for the lowest layer or for more than half of them.
 ///
 /// What is no part of the model is left out and counted: strokes of the types skirt, brim,
-/// support, raft, prime or wipe tower, shield and custom code, and all that comes before the first
-/// layer mark in a file that has such marks. Without marks nothing can be told apart, and all
-/// strokes count. Unknown types count, with a warning.
+/// support, raft, prime or wipe tower, shield, ironing and custom code, and all that comes before
+/// the first layer mark in a file that has such marks. Without marks nothing can be told apart, and
+/// all strokes count. Unknown types count, with a warning.
 ///
 /// Marks are comments: `;LAYER_CHANGE`, `;TYPE:`, `;WIDTH:`, `;HEIGHT:` (PrusaSlicer and its kin,
 /// our own writer), `; FEATURE: `, `; LINE_WIDTH: ` and so on (Bambu), `;LAYER:`, `;TYPE:` (Cura).
 ///
-/// M and T codes other than M82, M83 and M200, Klipper's named commands, and G codes that neither
-/// move to another place nor change how moves are read are ignored and counted. Nothing else is
-/// skipped. M220 and M221 (speed and flow) are corrections of the machine and ignored, too.
+/// Klipper's SAVE_GCODE_STATE and RESTORE_GCODE_STATE are followed. M and T codes other than M82,
+/// M83 and M200, Klipper's other named commands, and G codes that neither move to another place nor
+/// change how moves are read are ignored and counted. Nothing else is skipped. M220 and M221 (speed
+/// and flow) are corrections of the machine and ignored, too.
 ///
 /// Takes   a stream and a name for messages.
 /// Returns points on the grid, where the file has them: no move is shifted.

@@ -54,6 +54,9 @@ struct PlacedPrint {
   std::optional<double> stated_time_s;  ///< see GcodePrint
   /// What could not be paired, in one line; empty if nothing.
   std::string unpaired;
+  /// Material by E and by the marks of widths and heights, where the file has such marks.
+  double filament_mm3 = 0;
+  std::optional<double> marked_mm3;
 };
 
 /// Puts a file's strokes where they belong on a model. A layer of the model that has no counterpart
@@ -69,7 +72,9 @@ struct PlacedPrint {
                                       const ParallelFor& parallel_for);
 
 /// Judges placed strokes as if a contender had planned them, but for plan times, of which there are
-/// none. A file that lays material on layers of its own is off task, and so says the reason.
+/// none. A file that lays material on layers of its own is off task, and so says the reason; so is
+/// one whose E makes so much less or more than its marks of widths, which the scores believe, that
+/// the gate's limits of the deposit would be missed.
 [[nodiscard]] JudgedCell judge_print(const Judge& judge, const PreparedModel& model,
                                      std::span<const std::size_t> chosen, const PlacedPrint& placed,
                                      const ParallelFor& parallel_for);
