@@ -259,12 +259,24 @@ Polygons without_strips(Polygons region, double reach_mm, double near_mm,
 Polygons without_scraps(Polygons region, const Polygons& before, double reach_mm, double near_mm,
                         const PlanContext& context) {
   if (region.size() < 2) return region;
-  Polygons laid, scraps;
-  for (const Polygon& part : region) {
-    const bool is_scrap = strip_width_mm(part) < near_mm && offset({part}, -near_mm / 2).empty();
-    (is_scrap ? scraps : laid).push_back(part);
+  const double least_mm = kScrapShare * perimeter_mm(region);
+  std::vector<std::size_t> narrow;
+  double narrow_mm = 0;
+  for (std::size_t i = 0; i < region.size(); ++i) {
+    if (strip_width_mm(region[i]) >= near_mm) continue;
+    narrow.push_back(i);
+    narrow_mm += perimeter_mm(region[i]);
   }
-  if (perimeter_mm(scraps) <= kScrapShare * perimeter_mm(region)) return region;
+  // What is wide somewhere is no scrap. To look at that is dear, so not where it cannot matter.
+  std::vector<bool> is_scrap(region.size());
+  for (auto i = narrow.begin(); i != narrow.end() && narrow_mm > least_mm; ++i) {
+    is_scrap[*i] = offset({region[*i]}, -near_mm / 2).empty();
+    if (!is_scrap[*i]) narrow_mm -= perimeter_mm(region[*i]);
+  }
+  if (narrow_mm <= least_mm) return region;
+  Polygons laid, scraps;
+  for (std::size_t i = 0; i < region.size(); ++i)
+    (is_scrap[i] ? scraps : laid).push_back(region[i]);
   Polygons places = laid.empty() ? before : left_open(before, laid, near_mm / 2 + reach_mm);
   std::erase_if(places,
                 [&](const Polygon& place) { return !line_suffices(place, reach_mm, context); });
