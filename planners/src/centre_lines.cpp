@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -274,6 +275,34 @@ double least_area_mm2(const CentreLineRule& rule) {
   return std::min(line, disc(rule.min_dot_mm));
 }
 
+/// Whether a ring lies between two lines along its longest side that are less than `width_mm`
+/// apart.
+bool is_flat(const Ring& ring, double width_mm) {
+  Point2 along, previous = ring.back();
+  for (const Point2 p : ring) {
+    const Point2 side = p - std::exchange(previous, p);
+    if (dot(side, side) > dot(along, along)) along = side;
+  }
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  double low = kInfinity, high = -kInfinity;
+  for (const Point2 p : ring) {
+    low = std::min(low, cross(along, p));
+    high = std::max(high, cross(along, p));
+  }
+  return high - low < width_mm * std::sqrt(dot(along, along));
+}
+
+/// Whether it is seen at once that nothing is left of what rings bound if their sides move inwards
+/// by these distances.
+bool surely_vanish(const std::vector<Ring>& rings, const std::vector<double>& distances_mm) {
+  constexpr std::size_t kMostPoints = 16;  // of a ring: larger ones are seldom flat
+  for (std::size_t i = 0; i < rings.size(); ++i)
+    if (rings[i].size() > kMostPoints) return false;
+  for (std::size_t i = 0; i < rings.size(); ++i)
+    if (signed_area_mm2(rings[i]) > 0 && !is_flat(rings[i], -2 * distances_mm[i])) return false;
+  return true;
+}
+
 Point2 lower_corner(const std::vector<Ring>& rings) {
   Point2 lower = rings.front().front();
   for (const Ring& ring : rings)
@@ -306,6 +335,7 @@ std::vector<Stroke> centre_lines(TakenSides sides, const CentreLineRule& rule,
   const double inwards_mm = std::max(rule.min_width_mm / 2 - kCoreMm, 0.0);
   std::vector<double> distances_mm;
   for (const double taken_mm : sides.taken_mm) distances_mm.push_back(-taken_mm - inwards_mm);
+  if (surely_vanish(sides.rings, distances_mm)) return strokes;
   const Polygons cores = offset_boundary(sides.rings, distances_mm);
   Rooms rooms(sides, cores.size());
   for (const Polygon& core : cores) {
