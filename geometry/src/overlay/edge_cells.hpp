@@ -163,8 +163,9 @@ class LeftRay {
 
 template <typename Visit>
 void EdgeCells::visit_cells(const Edge& edge, Visit&& visit) const {
-  const auto [x0, x1] = std::minmax(edge.from.x, edge.to.x);
-  const auto [y0, y1] = std::minmax(edge.from.y, edge.to.y);
+  const auto [lower, upper] = box_of(edge);
+  const auto [x0, y0] = lower;
+  const auto [x1, y1] = upper;
   const std::uint32_t c0 = column(x0), c1 = column(x1), r0 = row(y0), r1 = row(y1);
   if (c0 == c1 || r0 == r1) {
     for (std::uint32_t r = r0; r <= r1; ++r)

@@ -16,9 +16,7 @@ constexpr std::size_t kFewCuts = 16;  // most rings have fewer
 
 /// Whether p, on the line through an edge, lies on the edge.
 bool within(const Edge& edge, GridPoint p) {
-  const auto [x0, x1] = std::minmax(edge.from.x, edge.to.x);
-  const auto [y0, y1] = std::minmax(edge.from.y, edge.to.y);
-  return x0 <= p.x && p.x <= x1 && y0 <= p.y && p.y <= y1;
+  return box_of(edge).meets({p, p});
 }
 
 /// Whether the line through an edge comes as near to p as half a unit in x or in y.
