@@ -80,7 +80,8 @@ std::string fault_of(const Route& route) {
 }
 
 /// Keeps how numbers are rounded, and which operations trap, as it was: a planner that changes it
-/// must not change what the judge finds.
+/// must not change what the judge finds. Once a layer, for that takes as long as planning a small
+/// island.
 class KeptArithmetic {
  public:
   KeptArithmetic() { std::fegetenv(&before_); }
@@ -138,7 +139,6 @@ class LayerAssembly {
 
   Route plan_part(const Contender::Slot& slot, const Layer& part) {
     const std::string& name = slot.name;
-    const KeptArithmetic kept;
     try {
       const Planner& planner = slot.planner();
       if (!timed_) return planner.plan(part, context_);
@@ -225,6 +225,7 @@ double Contender::peak_rss_bytes() const {
 PlannedLayer Contender::plan(const Layer& layer, const Demand& demand, const Task& task,
                              Point2 origin, std::uint64_t seed, std::stop_token stop,
                              PlanMemo* memo, bool timed) const {
+  const KeptArithmetic kept;
   PlanContext context;
   context.start = task.start_mm;
   context.origin = origin;
