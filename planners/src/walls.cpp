@@ -5,6 +5,7 @@
 #include <iterator>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <utility>
 
 #include "narrow_places.hpp"
@@ -27,7 +28,8 @@ constexpr double kStubShare = 0.6;
 /// What sides that would coincide are kept apart by: more than offsets are cleaned of.
 constexpr double kSideMm = 0.015;
 /// The sides of a strip are so much of its length apart along the boundary, where that is at its
-/// middle; there they are nearer to each other than it is wide anywhere.
+/// middle; there they are nearer to each other than it is wide anywhere. Of one with a single end
+/// they are twice as far apart where it begins.
 constexpr double kStripShare = 0.75;
 /// Scraps that are less of a wall's length do no harm that is worth a look.
 constexpr double kScrapShare = 0.2;
@@ -175,22 +177,38 @@ double narrowest_line_mm(const PlanContext& context) {
 
 namespace {
 
+/// How many ends of a strip are its own: not those at which it goes on to what is laid, from which
+/// it was cut off at so much.
+int free_ends(const Polygon& part, const EdgeGrid& laid, double cut_mm) {
+  constexpr double kCutMm = 0.01;  // more than offsets are cleaned of
+  const auto is_cut = [&](Point2 p) {
+    return laid.distance_to_edge_mm(p, cut_mm + kCutMm).has_value();
+  };
+  int free = 2;
+  bool was_cut = is_cut(part.outer.back());
+  for (const Point2 p : part.outer) {
+    const bool cut = is_cut(p);
+    if (cut && !was_cut && free > 0) --free;
+    was_cut = cut;
+  }
+  return free;
+}
+
 /// Whether one line serves a narrow part of a wall's region better than a wall there and back.
-bool is_strip(const Polygon& part, double reach_mm, const PlanContext& context) {
+bool is_strip(const Polygon& part, int ends, double reach_mm, const PlanContext& context) {
   const double area = area_mm2(part), width_mm = strip_width_mm(part);
   if (area < least_stroke_mm2(context) * 1e-3) return false;  // what rounding leaves
   const double length_mm = area / width_mm;
-  const bool has_ends = part.holes.empty();
   const double needed =
-      area + 2 * length_mm * reach_mm + (has_ends ? std::numbers::pi * reach_mm * reach_mm : 0);
+      area + 2 * length_mm * reach_mm + ends * std::numbers::pi / 2 * reach_mm * reach_mm;
   const double twice = perimeter_mm(part) * context.spacing_mm;
   const double once =
-      (width_mm + context.spacing_mm) * std::max(length_mm - (has_ends ? width_mm : 0), 0.0);
+      (width_mm + context.spacing_mm) * std::max(length_mm - ends * width_mm / 2, 0.0);
   return once >= kEnough * needed && std::abs(once - needed) < std::abs(twice - needed);
 }
 
-/// No strip with ends is shorter: is_strip's bound on what one line gives, solved for the length
-/// and at its least over widths up to `near_mm`.
+/// No strip with two ends is shorter, and none with one is half as long: is_strip's bound on what
+/// one line gives, solved for the length and at its least over widths up to `near_mm`.
 double shortest_strip_mm(double reach_mm, double near_mm, const PlanContext& context) {
   const double spacing_mm = context.spacing_mm;
   const double ends_mm2 = kEnough * std::numbers::pi * reach_mm * reach_mm;
@@ -247,8 +265,17 @@ Polygons without_strips(Polygons region, double reach_mm, double near_mm,
     // Clipped rings may hold several parts.
     open = laid.empty() ? polygons_from_rings(rings_of(open), FillRule::kPositive)
                         : left_open(open, laid, near_mm / 2);
+    std::optional<EdgeGrid> edges;
+    const auto serves = [&](const Polygon& part) {
+      if (!part.holes.empty()) return is_strip(part, 0, reach_mm, context);
+      if (is_strip(part, 2, reach_mm, context)) return true;
+      if (laid.empty() || !is_strip(part, 0, reach_mm, context)) return false;
+      if (!edges) edges.emplace(laid);
+      const int ends = free_ends(part, *edges, near_mm / 2 + kSideMm);
+      return ends < 2 && is_strip(part, ends, reach_mm, context);
+    };
     for (Polygon& part : open)
-      if (is_strip(part, reach_mm, context)) strips.push_back(std::move(part));
+      if (serves(part)) strips.push_back(std::move(part));
   }
   if (strips.empty()) return region;
   region.erase(first_narrow, region.end());

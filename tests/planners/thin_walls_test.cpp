@@ -138,6 +138,25 @@ TEST(ThinWalls, GetNoMoreThanTheyNeedOfSparseFillBetweenThem) {
       }
 }
 
+TEST(ThinWalls, ThatStandOnOthersAreValid) {
+  // A comb: its teeth have one end of their own, so shorter ones than of strips get one line.
+  for (const double width_mm : {0.46, 0.5, 0.55, 0.6, 0.7})
+    for (int length_mm = 3; length_mm <= 8; ++length_mm) {
+      const double far = 2.25 + length_mm;
+      Ring comb{{0, 0}, {30, 0}};
+      for (int tooth = 19; tooth >= 0; --tooth) {
+        const double x = 1.5 * tooth;
+        comb.insert(comb.end(), {snap(Point2{x + width_mm, 2.25}), snap(Point2{x + width_mm, far}),
+                                 snap(Point2{x, far}), snap(Point2{x, 2.25})});
+      }
+      comb.insert(comb.begin() + 2, {30, 2.25});
+      const Judged result = judged({{comb, {}}}, 1);
+      EXPECT_EQ(result.verdict.outcome, Outcome::kValid)
+          << width_mm << " x " << length_mm << " mm: " << result.verdict.reason;
+      EXPECT_LE(result.value("doubled"), 0.05) << width_mm << " x " << length_mm;
+    }
+}
+
 TEST(ThinWalls, ScrapsStayWhereNoLineFits) {
   // Two parts of a wall's region, in a place hardly longer than they are and in a long one.
   const PlanContext context = test::context_for(2, 1);
