@@ -27,6 +27,8 @@ from .text import POINTS_PER_INCH, text_height, text_width, wrap, wrapped
 
 MARGIN = 0.08
 _GAP = 0.1
+MOST_PIXELS = 32_000
+"""In a row or column of a PNG: Agg draws nothing that lies beyond 2^15 pixels."""
 _HANDLE = 2.2
 """Width of a legend's handle, in font sizes; _HANDLE_ROOM with its gaps."""
 _HANDLE_ROOM = 4.4
@@ -80,7 +82,9 @@ class Sheet:
         notes: Sequence[str] = (),
         legend: Sequence[LegendEntry] = (),
     ) -> None:
-        self.figure = Figure(figsize=(width, 1), dpi=DPI)
+        self.width = width
+        self.height = 1.0  # until it is known what is above and below the body
+        self.figure = Figure(figsize=(width, self.height), dpi=self._dpi())
         FigureCanvasAgg(self.figure)
         inner = width - 2 * MARGIN
         title_lines = wrap(title, inner, TITLE_SIZE, "bold")
@@ -98,10 +102,10 @@ class Sheet:
         height = (
             title_bottom + text_height(len(title_lines), TITLE_SIZE) + MARGIN
         )
-        self.width = width
         self.height = height
         self.body = Rect(MARGIN, bottom, inner, body_height)
         self.figure.set_size_inches(width, height)
+        self.figure.dpi = self._dpi()
 
         left = MARGIN / width
         self.figure.text(
@@ -185,8 +189,12 @@ class Sheet:
         stream = io.BytesIO()
         _PRINT[name](self.figure, stream, _METADATA[name])
         FigureCanvasAgg(self.figure)
-        self.figure.dpi = DPI
+        self.figure.dpi = self._dpi()
         return stream.getvalue()
+
+    def _dpi(self) -> float:
+        """Pixels an inch: fewer where there would be more than can be drawn."""
+        return min(DPI, MOST_PIXELS / max(self.width, self.height))
 
     def _settle(self) -> None:
         """Lays out once for all formats.

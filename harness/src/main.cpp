@@ -1,8 +1,11 @@
 /// The program `routebench`.
 
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <csignal>
+#include <cstdlib>
 #include <exception>
 #include <iostream>
 #include <new>
@@ -77,12 +80,29 @@ void check_command(const CLI::App& app, int argc, char** argv) {
                                                                 " (see routebench --help)");
 }
 
-}  // namespace
+/// Tells of whatever calls exit() while a command is at work, such as a planner: nothing is done
+/// then, and an exit code of 0 would say that all is.
+class ExitWatch {
+ public:
+  ExitWatch() {
+    program_ = getpid();
+    std::atexit(complain_and_exit);
+    std::at_quick_exit(complain_and_exit);
+  }
+  ~ExitWatch() { program_ = 0; }
+  ExitWatch(const ExitWatch&) = delete;
+  ExitWatch& operator=(const ExitWatch&) = delete;
 
-int main(int argc, char** argv) {
-  // A file that may not grow any further is an error like a full disk, not the end of the program.
-  // (A handler, not SIG_IGN: what is started from here does not inherit it.)
-  std::signal(SIGXFSZ, [](int) {});
+ private:
+  static void complain_and_exit() {
+    if (getpid() != program_) return;  // all is over, or it is a cell's own process
+    _exit(complain("a planner has ended the program before its work was done", kExitInternal));
+  }
+  static inline pid_t program_ = 0;
+};
+
+/// All but what main itself sees to.
+int run(int argc, char** argv) {
   CLI::App app{"Plan routes for 3D printing and judge them", "routebench"};
   app.set_version_flag("--version", std::string(routebench::kVersion));
   app.require_subcommand(1);
@@ -130,4 +150,14 @@ int main(int argc, char** argv) {
                     kExitInternal);
   }
   return exit_code;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  // A file that may not grow any further is an error like a full disk, not the end of the program.
+  // (A handler, not SIG_IGN: what is started from here does not inherit it.)
+  std::signal(SIGXFSZ, [](int) {});
+  const ExitWatch watch;
+  return run(argc, argv);
 }

@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+import io
 import unittest
 from collections.abc import Sequence
 from pathlib import Path
 
+import numpy as np
+from matplotlib import image
+from matplotlib.patches import Rectangle
+
 from routebench_plots.figures import chosen_metrics, figures
+from routebench_plots.sheet import Rect, Sheet
 from support import LONG_MODEL, LONG_NAME, UNBROKEN_NAME, PlotTestCase
 from synthetic import fill
 
@@ -61,6 +67,21 @@ class LayoutTest(PlotTestCase):
 
     def test_names_of_other_scripts(self) -> None:
         self.check(["модель", "模型"], ["größe µ", "naïve → élève", "\t\n"])
+
+    def test_nothing_lies_where_a_png_cannot_be_drawn(self) -> None:
+        # Wider than Agg draws at the usual resolution, and wider than it makes at all.
+        for width in (200.0, 400.0):
+            with self.subTest(width=width):
+                sheet = Sheet(width, 1, "wide")
+                axes = sheet.axes_at(Rect(width - 1.5, sheet.body.bottom, 1, 1))
+                axes.set_axis_off()
+                axes.add_patch(Rectangle((0, 0), 1, 1, color="black"))
+                pixels = image.imread(io.BytesIO(sheet.encoded("png")))
+                dark = np.flatnonzero((pixels[..., :3] == 0).all(axis=2).any(axis=0))
+                self.assertGreater(dark.size, 0)
+                edge = dark.max() / pixels.shape[1] * width
+                self.assertAlmostEqual(edge, width - 0.5, delta=0.05)
+                self.assertEqual(sheet.encoded("svg"), sheet.encoded("svg"))
 
 
 if __name__ == "__main__":

@@ -131,6 +131,27 @@ TEST_P(JudgeLaw, SplittingStrokesInPlaceChangesNothing) {
   }
 }
 
+TEST_P(JudgeLaw, StrokesThatLayNothingChangeNothing) {
+  const Scores before = bench_.score(Point2{1, 2});
+  const Route honest = bench_.route;
+  // Dots that divide travels into short ones, and such as would bridge them without any gap.
+  for (const double step_mm : {0.9 * bench_.printer.retract_over_mm, 0.9 * bench_.task.join_mm}) {
+    bench_.route.strokes.clear();
+    for (const Stroke& stroke : honest.strokes) {
+      if (!bench_.route.strokes.empty()) {
+        const Point2 from = bench_.route.strokes.back().points.back(), to = stroke.points.front();
+        const auto steps = static_cast<int>(std::ceil(distance(from, to) / step_mm));
+        for (int i = 1; i < steps; ++i) {
+          const Point2 p = snap(lerp(from, to, static_cast<double>(i) / steps));
+          bench_.route.strokes.push_back({{p, p}, stroke.width_mm});
+        }
+      }
+      bench_.route.strokes.push_back(stroke);
+    }
+    EXPECT_EQ(bench_.score(Point2{1, 2}), before) << step_mm;
+  }
+}
+
 TEST_P(JudgeLaw, ADetourAddsItsLength) {
   const Scores before = bench_.score();
   // In the middle of a stroke: out and back again.

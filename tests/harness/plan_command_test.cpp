@@ -274,6 +274,14 @@ TEST_F(PlanCommand, MakesTheFoldersThatItsOutputsName) {
     EXPECT_TRUE(fs::is_regular_file(in_folder(file))) << file;
 }
 
+TEST_F(PlanCommand, APlannerThatEndsTheProgramIsNoSuccess) {
+  const ProgramRun run = call({"plan", kModel, "--fill", "culprit", "--set", "fill.crime=exit",
+                               "--plugin", ROUTEBENCH_CULPRIT_PLUGIN});
+  EXPECT_EQ(run.exit_code, 3);
+  EXPECT_EQ(run.out, "");
+  EXPECT_EQ(run.err, "routebench: a planner has ended the program before its work was done\n");
+}
+
 TEST_F(PlanCommand, AFullDiskIsAnError) {
   if (!fs::exists("/dev/full")) GTEST_SKIP() << "no /dev/full on this system";
   expect_refused({"plan", kModel, "--fill", "rectilinear", "--gcode", "/dev/full"}, "/dev/full");

@@ -1,6 +1,8 @@
 #include "judge/run.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -24,9 +26,30 @@ void check(const Stroke& stroke, std::size_t place) {
     refuse("has a width that is not a positive number of mm");
 }
 
+/// Whether strokes that meet are longer than `least_mm` together.
+bool are_longer(std::span<const Stroke> strokes, double least_mm) {
+  double length_mm = 0;
+  for (const Stroke& stroke : strokes)
+    for (std::size_t i = 1; i < stroke.points.size(); ++i) {
+      length_mm += distance(stroke.points[i - 1], stroke.points[i]);
+      if (length_mm > least_mm) return true;
+    }
+  return false;
+}
+
+/// Where the strokes end that meet each other from the first one on.
+std::size_t end_of_meeting(const std::vector<Stroke>& strokes, std::size_t first) {
+  std::size_t end = first + 1;
+  while (end < strokes.size() && strokes[end].points.front() == strokes[end - 1].points.back())
+    ++end;
+  return end;
+}
+
 }  // namespace
 
 std::vector<Run> runs_of(const Route& route, double join_mm) {
+  for (std::size_t place = 0; place < route.strokes.size(); ++place)
+    check(route.strokes[place], place);
   std::vector<Run> runs;
   const auto go_to = [&runs](Point2 p, double width_mm) {
     Run& run = runs.back();
@@ -34,9 +57,7 @@ std::vector<Run> runs_of(const Route& route, double join_mm) {
     run.points.push_back(p);
     run.widths_mm.push_back(width_mm);
   };
-  for (std::size_t place = 0; place < route.strokes.size(); ++place) {
-    const Stroke& stroke = route.strokes[place];
-    check(stroke, place);
+  const auto add = [&](const Stroke& stroke) {
     const Point2 start = stroke.points.front();
     if (runs.empty() || distance(runs.back().points.back(), start) > join_mm) {
       Run& run = runs.emplace_back();
@@ -47,6 +68,12 @@ std::vector<Run> runs_of(const Route& route, double join_mm) {
       go_to(start, 0);
     }
     for (const Point2 p : stroke.points) go_to(p, stroke.width_mm);
+  };
+  for (std::size_t first = 0; first < route.strokes.size();) {
+    const std::size_t end = end_of_meeting(route.strokes, first);
+    const auto meeting = std::span(route.strokes).subspan(first, end - first);
+    if (are_longer(meeting, join_mm)) std::for_each(meeting.begin(), meeting.end(), add);
+    first = end;
   }
   for (Run& run : runs)
     run.loop = run.points.size() > 2 && distance(run.points.front(), run.points.back()) <= join_mm;

@@ -9,8 +9,7 @@
 
 namespace routebench::judging {
 
-/// Material laid without a stop. Consecutive points differ; a run whose stroke went nowhere is one
-/// point.
+/// Material laid without a stop. Consecutive points differ.
 struct Run {
   std::vector<Point2> points;
   /// Of the bead from points[i] to points[i + 1]; 0 where the run only steps over a gap.
@@ -19,7 +18,9 @@ struct Run {
 };
 
 /// The runs of a route: strokes whose gap is no longer than join_mm are one run. So nothing that is
-/// measured on runs depends on where a planner cuts its strokes.
+/// measured on runs depends on where a planner cuts its strokes. What is no longer than join_mm
+/// from gap to gap is left out: it lays nothing, and must neither divide a travel into short ones
+/// nor bridge it by steps that are no gaps.
 ///
 /// Throws Error{kBadInput} naming the first stroke that cannot be judged: one without points, with
 /// a
