@@ -62,17 +62,17 @@ bool is_place(Point2 p) {
 std::string fault_of(const Route& route) {
   for (std::size_t i = 0; i < route.strokes.size(); ++i) {
     const Stroke& stroke = route.strokes[i];
-    const std::string which = "stroke " + std::to_string(i) + " of the returned route ";
+    const auto which = [i] { return "stroke " + std::to_string(i) + " of the returned route "; };
     if (stroke.points.size() < 2)
-      return which + "has " + std::to_string(stroke.points.size()) +
+      return which() + "has " + std::to_string(stroke.points.size()) +
              " points; it needs two or more";
     if (!(stroke.width_mm > 0 && stroke.width_mm <= kWidestMm))
-      return which + "has the width " + std::to_string(stroke.width_mm) +
+      return which() + "has the width " + std::to_string(stroke.width_mm) +
              " mm; it must be positive and at most a metre";
     for (std::size_t k = 0; k < stroke.points.size(); ++k) {
       const Point2 p = stroke.points[k];
       if (!is_place(p))
-        return which + "has point " + std::to_string(k) + " at (" + std::to_string(p.x) + ", " +
+        return which() + "has point " + std::to_string(k) + " at (" + std::to_string(p.x) + ", " +
                std::to_string(p.y) + "); coordinates must be finite and within a kilometre";
     }
   }

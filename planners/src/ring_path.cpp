@@ -20,16 +20,19 @@ bool comes_before(const Ring& ring, const RingPlace& a, const RingPlace& b) {
 }
 
 std::vector<Point2> path_along(const Ring& ring, const RingPlace& from, const RingPlace& to) {
-  std::vector<Point2> path{from.point};
+  const bool on_one_edge = from.edge == to.edge && comes_before(ring, from, to);
+  const std::size_t corners =
+      on_one_edge ? 0 : to.edge + (to.edge > from.edge ? 0 : ring.size()) - from.edge;
+  std::vector<Point2> path;
+  path.reserve(corners + 2);
+  path.push_back(from.point);
   const auto go_to = [&](Point2 p) {
     if (p != path.back()) path.push_back(p);
   };
   std::uint32_t edge = from.edge;
-  if (from.edge != to.edge || !comes_before(ring, from, to)) {
-    do {
-      edge = edge + 1 < ring.size() ? edge + 1 : 0;
-      go_to(ring[edge]);
-    } while (edge != to.edge);
+  for (std::size_t i = 0; i < corners; ++i) {
+    edge = edge + 1 < ring.size() ? edge + 1 : 0;
+    go_to(ring[edge]);
   }
   go_to(to.point);
   return path;
