@@ -43,7 +43,9 @@ try:
 
     _missing = ""
 except ImportError as error:
-    _missing = f"{error}; planners in Python need numpy: install the package python3-numpy"
+    _missing = str(error)
+    if error.name == "numpy":
+        _missing += "; planners in Python need numpy: install the package python3-numpy"
 
 
 def load(file: Path) -> ModuleType:

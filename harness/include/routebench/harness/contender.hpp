@@ -127,12 +127,13 @@ class Contender {
     ParamSet params;        ///< all of them
     int repeats_every = 0;  ///< see PlannerInfo
     std::function<std::unique_ptr<const Planner>()> make;
-    mutable std::once_flag once = {};
+    mutable std::mutex making = {};  // once_flag does not outlive exceptions everywhere
     mutable std::unique_ptr<const Planner> made = nullptr;
 
     /// Throws what the planner's constructor throws.
     [[nodiscard]] const Planner& planner() const {
-      std::call_once(once, [this] { made = make(); });
+      const std::lock_guard lock(making);
+      if (!made) made = make();
       return *made;
     }
   };
