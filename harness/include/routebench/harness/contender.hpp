@@ -1,6 +1,7 @@
 #pragma once
 /// What is compared: planners with parameters that together print a layer.
 
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -129,11 +130,14 @@ class Contender {
     std::function<std::unique_ptr<const Planner>()> make;
     mutable std::mutex making = {};  // once_flag does not outlive exceptions everywhere
     mutable std::unique_ptr<const Planner> made = nullptr;
+    mutable std::atomic<const Planner*> ready = nullptr;  // made, for threads that need no lock
 
     /// Throws what the planner's constructor throws.
     [[nodiscard]] const Planner& planner() const {
+      if (const Planner* const there = ready.load(std::memory_order_acquire)) return *there;
       const std::lock_guard lock(making);
       if (!made) made = make();
+      ready.store(made.get(), std::memory_order_release);
       return *made;
     }
   };
