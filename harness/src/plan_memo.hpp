@@ -18,7 +18,7 @@ class PlanMemo {
   /// What the route of a region depends on, beside the region and what is the same in all the job.
   struct Question {
     const void* planner;  ///< tells one from the other
-    int phase;  ///< the layer's index modulo PlannerInfo::repeats_every
+    int phase;            ///< the layer's index modulo PlannerInfo::repeats_every
     double height_mm;
     Point2 start;
     double density;

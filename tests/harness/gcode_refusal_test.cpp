@@ -98,7 +98,7 @@ TEST(GcodeReader, AFileWithoutMaterialIsRefused) {
   for (const char* text : {"\x1F\x8B\x08", "PK\x03\x04"})
     EXPECT_EQ(refusal(text), "a.gcode:1: this is a compressed file; unpack it");
   for (const std::string& text : {std::string("\xFF\xFEG\0", 4), std::string("\xFE\xFF\0G", 4),
-                                 std::string("\0G\0", 3), std::string("G\0", 2)})
+                                  std::string("\0G\0", 3), std::string("G\0", 2)})
     EXPECT_EQ(refusal(text),
               "a.gcode:1: this is UTF-16 or no text at all; G-code is plain text, in ASCII or "
               "UTF-8");

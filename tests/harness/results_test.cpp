@@ -305,8 +305,9 @@ TEST(Results, CellsOfNothingAreRefused) {
     const ScratchDir dir;
     const fs::path file = database_with_a_cell(dir.path());
     execute(file, std::string("PRAGMA foreign_keys = OFF; DELETE FROM ") + table);
-    const std::string why = file.string() + ": is damaged: a cell names a run, model, contender or "
-                                            "setting that is not there";
+    const std::string why = file.string() +
+                            ": is damaged: a cell names a run, model, contender or "
+                            "setting that is not there";
     EXPECT_EQ(refusal(dir.path(), "t", Start::kResume), why) << table;
     try {
       static_cast<void>(current_cells(file));

@@ -15,9 +15,7 @@ constexpr std::uint32_t kFewPieces = 16 * kFewEdges;  // which are shorter than 
 constexpr std::size_t kFewCuts = 16;  // most rings have fewer
 
 /// Whether p, on the line through an edge, lies on the edge.
-bool within(const Edge& edge, GridPoint p) {
-  return box_of(edge).meets({p, p});
-}
+bool within(const Edge& edge, GridPoint p) { return box_of(edge).meets({p, p}); }
 
 /// Whether the line through an edge comes as near to p as half a unit in x or in y.
 bool passes_through_pixel(const Edge& edge, GridPoint p) {

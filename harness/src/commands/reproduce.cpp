@@ -58,8 +58,9 @@ int reproduce(const Arguments& arguments) {
   std::error_code error;
   if (!std::filesystem::exists(summary.file, error))
     throw Error(ErrorKind::kBadInput,
-                original.string() + ": its config has none of the cells that it holds, so nothing "
-                                    "was executed again");
+                original.string() +
+                    ": its config has none of the cells that it holds, so nothing "
+                    "was executed again");
   const Comparison comparison = compare_results(original, summary.file);
   write_to_stdout([&](std::ostream& out) {
     write_comparison(out, comparison);

@@ -1,4 +1,5 @@
-/// RowLoops compiled for processors with AVX-512 that convert and count whole words (DQ, VPOPCNTDQ).
+/// RowLoops compiled for processors with AVX-512 that convert and count whole words (DQ,
+/// VPOPCNTDQ).
 
 #include "judge/row_loops_lanes.hpp"
 
