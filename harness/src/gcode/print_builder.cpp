@@ -7,6 +7,7 @@
 
 #include "gcode/stroke_types.hpp"
 #include "routebench/geometry/vec.hpp"
+#include "routebench/harness/task.hpp"
 
 namespace routebench::gcode {
 namespace {
@@ -25,20 +26,12 @@ Filament& operator+=(Filament& sum, const Filament& more) {
   return sum;
 }
 
-constexpr double kQuarterPi = std::numbers::pi / 4;
-
-/// Width of a bead, a rectangle with round ends or, where it is narrower than high, an ellipse:
-/// the inverse of Task::mean_width_mm.
+/// The inverse of mean_bead_width_mm, from the section.
 double width_of_bead(double section_mm2, double height_mm) {
+  constexpr double kQuarterPi = std::numbers::pi / 4;
   const double mean_mm = section_mm2 / height_mm;
   return mean_mm >= height_mm * kQuarterPi ? mean_mm + height_mm * (1 - kQuarterPi)
                                            : mean_mm / kQuarterPi;
-}
-
-/// Its inverse.
-double section_of_bead(double width_mm, double height_mm) {
-  return height_mm *
-         (width_mm >= height_mm ? width_mm - height_mm * (1 - kQuarterPi) : width_mm * kQuarterPi);
 }
 
 }  // namespace
@@ -221,7 +214,8 @@ void PrintBuilder::set_widths(RawLayer& layer, Place place) {
     const Body& body = layer.bodies[i];
     double& width_mm = layer.layer.route.strokes[i].width_mm;
     if (width_mm > 0) {
-      print_.marked_mm3 += section_of_bead(width_mm, layer.layer.height_mm) * body.length_mm;
+      const double height_mm = layer.layer.height_mm;
+      print_.marked_mm3 += mean_bead_width_mm(width_mm, height_mm) * height_mm * body.length_mm;
       continue;
     }
     print_.marked_mm3 += volume_mm3(body.filament);

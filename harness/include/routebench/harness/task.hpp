@@ -31,6 +31,13 @@ enum class SkinRule {
   kNear,        ///< whole layers near level facets (De Keyser, 2016, an earlier rule)
 };
 
+/// Mean width of a bead, section / height: of a rectangle with round ends or, where it is narrower
+/// than high, of an ellipse.
+[[nodiscard]] inline double mean_bead_width_mm(double width_mm, double height_mm) noexcept {
+  return width_mm >= height_mm ? width_mm - height_mm * (1 - std::numbers::pi / 4)
+                               : width_mm * std::numbers::pi / 4;
+}
+
 struct Task {
   double layer_height_mm = 0.2;
   double line_width_mm = 0.45;
@@ -50,11 +57,9 @@ struct Task {
   }
   /// Section of a bead, mm2: (w - h) h + pi h^2 / 4 = spacing x height.
   [[nodiscard]] double bead_section_mm2() const noexcept { return spacing_mm() * layer_height_mm; }
-  /// Mean width of a bead of any width, section / height: of the task's own width its spacing.
-  /// Under one layer height a bead is an ellipse.
+  /// Mean width of a bead of any width: of the task's own width its spacing.
   [[nodiscard]] double mean_width_mm(double width_mm) const noexcept {
-    return width_mm >= layer_height_mm ? width_mm - layer_height_mm * (1 - std::numbers::pi / 4)
-                                       : width_mm * std::numbers::pi / 4;
+    return mean_bead_width_mm(width_mm, layer_height_mm);
   }
 };
 
