@@ -5,7 +5,9 @@
                                 [--cores 2,1] [--bench PROGRAM] [--before PROGRAM]
 
 One process at a time, all contenders of a model in random order, again in every repetition; each is
-bound to the given number of cores. Wall time, CPU time and peak memory are those of the process and
+bound to the given number of cores. All have the same work: once all fill what is too narrow for a
+wall, as the planners do unless told otherwise, and once all leave it; how much of the parts each
+covers, as our judge sees it, tells whether they did. Wall time, CPU time and peak memory are those of the process and
 its children as the kernel counts them; the page shows medians. What judging costs beside planning
 is told by the program itself, for every layer. With --bench, a routebench-bench, parts of the job
 stand beside what bounds them. With --before, an older build of the program, and valgrind installed,
@@ -18,6 +20,7 @@ from __future__ import annotations
 import argparse
 import csv
 import json
+import math
 import os
 import platform
 import random
@@ -44,9 +47,9 @@ OURS = "routebench"
 TARGETS = {"PrusaSlicer": (15.0, 0.5), "Slic3r": (15.0, None), "CuraEngine": (8.0, 1.0)}
 MANY_CONTOURS_TARGET = 50.0  # times faster than PrusaSlicer
 JUDGING_TARGET = 1.0  # times what reading, slicing and planning take
-# Centre lines ask CGAL for exact predicates, which round in directions that valgrind cannot.
+# What is too narrow for a wall gets a line of its own width, or none.
+LEAVE_NARROW = ["--set", "shell.gaps=leave", "--set", "fill.thin=drop"]
 PROFILED = ["organic/armadillo.stl?size=40", "thin/hex_grate.stl?size=40"]
-PROFILE_SETTINGS = ["--set", "shell.gaps=leave", "--set", "fill.thin=drop"]
 PROFILED_FUNCTIONS = {
     "whole job": r"\(below main\)",
     "offsets": r"routebench::offset\(",
@@ -62,11 +65,13 @@ class Run:
 
     model: str
     contender: str
+    narrow: str  # places: "filled" or "left"
     cores: int
     wall_s: float
     cpu_s: float
     peak_mb: float
     gcode_bytes: int
+    covered: float = math.nan  # share of what is to be covered; judged once
 
 
 @dataclass
@@ -78,13 +83,13 @@ class Phases:
     judging_s: float
 
 
-def ini(prusa: bool) -> str:
+def ini(prusa: bool, fills_narrow: bool) -> str:
     """The task for PrusaSlicer and Slic3r, which share most of their keys."""
     keys: dict[str, object] = {
         "layer_height": 0.2, "first_layer_height": 0.2, "perimeters": 2, "fill_density": "20%",
         "fill_pattern": "rectilinear", "fill_angle": 45, "infill_overlap": "25%",
         "top_solid_layers": 3, "bottom_solid_layers": 3, "solid_infill_below_area": 0,
-        "thin_walls": 0, "extra_perimeters": 0, "overhangs": 0, "skirts": 0, "brim_width": 0,
+        "thin_walls": int(fills_narrow), "extra_perimeters": 0, "overhangs": 0, "skirts": 0, "brim_width": 0,
         "support_material": 0, "cooling": 0, "nozzle_diameter": 0.4, "filament_diameter": 1.75,
         "seam_position": "nearest", "retract_length": 0.8, "retract_speed": 40,
         "retract_before_travel": 2, "retract_layer_change": 0, "retract_lift": 0, "wipe": 0,
@@ -99,21 +104,22 @@ def ini(prusa: bool) -> str:
         keys[f"{part}_speed"] = 60
     if prusa:
         keys |= {"perimeter_generator": "classic", "ensure_vertical_shell_thickness": 0,
-                 "elefant_foot_compensation": 0, "gap_fill_enabled": 0}
+                 "elefant_foot_compensation": 0, "gap_fill_enabled": int(fills_narrow)}
     else:
-        keys["fill_gaps"] = 0
+        keys["fill_gaps"] = int(fills_narrow)
     return "".join(f"{key} = {value}\n" for key, value in keys.items())
 
 
-def cura_settings() -> list[str]:
+def cura_settings(fills_narrow: bool) -> list[str]:
     """The task for CuraEngine, whose beads are rectangles; once for all, once for the extruder."""
     keys: dict[str, object] = {
         "layer_height": 0.2, "layer_height_0": 0.2, "wall_line_count": 2, "top_layers": 3,
         "bottom_layers": 3, "initial_bottom_layers": 3, "roofing_layer_count": 0,
         "infill_line_distance": round(SPACING_MM / 0.2, 5), "infill_pattern": "zigzag",
         "zig_zaggify_infill": "true", "infill_wipe_dist": 0, "initial_layer_line_width_factor": 100,
-        "adhesion_type": "none", "support_enable": "false", "fill_outline_gaps": "false",
-        "fill_perimeter_gaps": "nowhere", "alternate_extra_perimeter": "false",
+        "adhesion_type": "none", "support_enable": "false", "fill_outline_gaps": str(fills_narrow).lower(),
+        "fill_perimeter_gaps": "everywhere" if fills_narrow else "nowhere",
+        "alternate_extra_perimeter": "false",
         "retraction_combing": "off", "retraction_amount": 0.8, "retraction_min_travel": 2,
         "retraction_count_max": 10000, "travel_avoid_other_parts": "false",
         "speed_slowdown_layers": 0, "acceleration_enabled": "false", "material_diameter": 1.75,
@@ -144,17 +150,19 @@ def task_options() -> list[str]:
     return [word for key, value in TASK.items() for word in ("--task", f"{key}={value}")]
 
 
-def contenders(program: Path, scratch: Path) -> tuple[dict[str, list[str]], list[str]]:
+def contenders(program: Path, scratch: Path,
+               fills_narrow: bool) -> tuple[dict[str, list[str]], list[str]]:
     """Command lines with MODEL, OUT and CORES to be filled in, and what is missing."""
-    found = {OURS: [str(program), "plan", "MODEL", *PLANNERS, *task_options(), "--no-judge",
+    found = {OURS: [str(program), "plan", "MODEL", *PLANNERS,
+                    *([] if fills_narrow else LEAVE_NARROW), *task_options(), "--no-judge",
                     "--gcode", "OUT", "--jobs", "CORES"]}
     missing: list[str] = []
     for name, command in (("PrusaSlicer", "prusa-slicer"), ("Slic3r", "slic3r")):
         if shutil.which(command) is None:
             missing.append(f"{name} ({command})")
             continue
-        settings = scratch / f"{command}.ini"
-        settings.write_text(ini(command == "prusa-slicer"), encoding="utf-8")
+        settings = scratch / f"{command}-{'filled' if fills_narrow else 'left'}.ini"
+        settings.write_text(ini(command == "prusa-slicer", fills_narrow), encoding="utf-8")
         found[name] = (
             [command, "--load", str(settings), "--loglevel", "1", "--center", "200,200",
              "--export-gcode", "--output", "OUT", "MODEL"] if command == "prusa-slicer" else
@@ -167,7 +175,7 @@ def contenders(program: Path, scratch: Path) -> tuple[dict[str, list[str]], list
         os.environ["CURA_ENGINE_SEARCH_PATH"] = ":".join(
             [str(definitions.parent), str(definitions.parent.parent / "extruders")])
         found["CuraEngine"] = ["CuraEngine", "slice", "-mCORES", "-j", str(definitions),
-                               *cura_settings(), "-o", "OUT", "-l", "MODEL"]
+                               *cura_settings(fills_narrow), "-o", "OUT", "-l", "MODEL"]
     return found, missing
 
 
@@ -189,25 +197,40 @@ def execute(command: list[str], model: Path, cores: int, scratch: Path) -> Run |
     process.returncode = os.waitstatus_to_exitcode(status)
     if process.returncode != 0 or not out.exists():
         return None
-    return Run(model.name, "", cores, wall_s, usage.ru_utime + usage.ru_stime,
+    return Run(model.name, "", "", cores, wall_s, usage.ru_utime + usage.ru_stime,
                usage.ru_maxrss / 1024, out.stat().st_size)
 
 
-def measure(model: Path, commands: dict[str, list[str]], cores: list[int], repetitions: int,
-            scratch: Path) -> list[Run]:
+def measure(program: Path, model: Path, commands: dict[str, dict[str, list[str]]],
+            works: list[tuple[str, int]], repetitions: int, scratch: Path) -> list[Run]:
+    """Runs every contender of `commands`, by what becomes of narrow places, on every work; what it
+    has written the first time is judged by `program`."""
     order = random.Random(model.stem)
     runs: list[Run] = []
     for repetition in range(repetitions):
-        cells = [(name, count) for name in commands for count in cores]
-        for name, count in order.sample(cells, len(cells)):
-            run = execute(commands[name], model, count, scratch)
-            print(f"{model.stem} {repetition + 1}/{repetitions} {name} on {count}: "
+        cells = [(name, narrow, count) for narrow, count in works for name in commands[narrow]]
+        for name, narrow, count in order.sample(cells, len(cells)):
+            run = execute(commands[narrow][name], model, count, scratch)
+            print(f"{model.stem} {repetition + 1}/{repetitions} {name}, narrow places {narrow}, "
+                  f"on {count}: "
                   + (f"{run.wall_s:.2f} s, CPU {run.cpu_s:.2f} s" if run else "failed"),
                   file=sys.stderr, flush=True)
             if run:
-                run.model, run.contender = model.stem, name
+                run.model, run.contender, run.narrow = model.stem, name, narrow
+                if repetition == 0:
+                    run.covered = covered_by(program, model, scratch / "out.gcode")
                 runs.append(run)
     return runs
+
+
+def covered_by(program: Path, model: Path, gcode: Path) -> float:
+    """What a file's strokes cover of what is to be covered, as a share; nan if nobody can tell."""
+    done = subprocess.run([str(program), "plan", str(model), "--from-gcode", str(gcode),
+                           *task_options(), "--json", "-"], stdout=subprocess.PIPE,
+                          stderr=subprocess.DEVNULL, check=False, encoding="utf-8")
+    if done.returncode not in (0, 1):
+        return math.nan
+    return json.loads(done.stdout).get("totals", {}).get("covered", math.nan)
 
 
 def measure_phases(program: Path, model: Path, repetitions: int) -> list[Phases]:
@@ -241,7 +264,7 @@ def instructions(program: Path, model: str, scratch: Path, judged: bool) -> dict
     """Instructions of the profiled functions with all that they call."""
     file = scratch / "callgrind.out"
     command = ["valgrind", "--tool=callgrind", f"--callgrind-out-file={file}", str(program), "plan",
-               model, *PLANNERS, *PROFILE_SETTINGS, *task_options(), "--jobs", "1", "--gcode",
+               model, *PLANNERS, *LEAVE_NARROW, *task_options(), "--jobs", "1", "--gcode",
                str(scratch / "out.gcode")] + ([] if judged else ["--no-judge"])
     if subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
                       check=False).returncode not in (0, 1):
@@ -261,12 +284,13 @@ def instructions(program: Path, model: str, scratch: Path, judged: bool) -> dict
     return result
 
 
-def median_runs(runs: list[Run]) -> dict[tuple[str, str, int], Run]:
-    groups: dict[tuple[str, str, int], list[Run]] = {}
+def median_runs(runs: list[Run]) -> dict[tuple[str, str, str, int], Run]:
+    groups: dict[tuple[str, str, str, int], list[Run]] = {}
     for run in runs:
-        groups.setdefault((run.model, run.contender, run.cores), []).append(run)
+        groups.setdefault((run.model, run.contender, run.narrow, run.cores), []).append(run)
     return {key: Run(*key, *(statistics.median(getattr(r, field) for r in group)
-                             for field in ("wall_s", "cpu_s", "peak_mb", "gcode_bytes")))
+                             for field in ("wall_s", "cpu_s", "peak_mb", "gcode_bytes")),
+                     group[0].covered)
             for key, group in groups.items()}
 
 
@@ -284,16 +308,49 @@ def judging_table(phases: list[Phases]) -> list[str]:
     return lines
 
 
+def slicer_table(medians: dict[tuple[str, str, str, int], Run], narrow: str,
+                 cores: int) -> list[str]:
+    lines = ["| model | contender | covered, % | wall s | CPU s | peak MB "
+             "| our wall is shorter by | our CPU is less by | target | met |",
+             "|---|---|---|---|---|---|---|---|---|---|"]
+    for model in sorted({model for model, *_ in medians}):
+        ours = medians.get((model, OURS, narrow, cores))
+        for name in [OURS, *TARGETS]:
+            run = medians.get((model, name, narrow, cores))
+            if run is None or ours is None:
+                continue
+            covered = f"{100 * run.covered:.1f}" if math.isfinite(run.covered) else "-"
+            row = (f"| {model} | {name} | {covered} | {run.wall_s:.2f} | {run.cpu_s:.2f} "
+                   f"| {run.peak_mb:.0f} ")
+            if name == OURS:
+                lines.append(row + "| | | | |")
+                continue
+            faster, memory = TARGETS[name]
+            if any(Path(m).stem == model for m in MANY_CONTOURS):
+                faster = MANY_CONTOURS_TARGET if name == "PrusaSlicer" else faster
+            ratio = run.wall_s / ours.wall_s
+            lean = memory is None or ours.peak_mb <= memory * run.peak_mb
+            met = ("yes" if ratio >= faster else "no") + ("" if lean else ", too much memory")
+            target = f"{faster:g} x" + (f", memory {memory:g} x" if memory else "")
+            lines.append(row + f"| {ratio:.1f} x | {run.cpu_s / ours.cpu_s:.1f} x "
+                               f"| {target} | {met} |")
+    return lines
+
+
 def page(runs: list[Run], phases: list[Phases], parts: dict[str, speed_parts.Measured],
-         missing: list[str], cores: list[int], repetitions: int,
+         missing: list[str], works: list[tuple[str, int]], repetitions: int,
          profiles: list[tuple[str, dict[str, float], dict[str, float]]], load: float,
          commit: str) -> str:
     medians = median_runs(runs)
-    models = sorted({run.model for run in runs})
     lines = ["# The whole job beside slicers", "",
              "Model to written G-code: `plan MODEL " + " ".join(PLANNERS) + " --no-judge`, task "
              + ", ".join(f"{key} = {value}" for key, value in TASK.items()) + ". Slicers have the "
-             "same task, as far as their settings go (see `experiments/speed_report.py`).", "",
+             "same task, as far as their settings go (see `experiments/speed_report.py`). Where a "
+             "part or a gap is too narrow for a wall, these planners lay a line of its own width; "
+             "so the slicers are told to find thin walls and to fill gaps. The last table is of "
+             "jobs that leave such places: ours with `" + " ".join(LEAVE_NARROW) + "`, theirs "
+             "without these settings. How much of what is to be covered each file covers is judged "
+             "once, as by `plan --from-gcode`.", "",
              f"Medians of {repetitions} run(s), contenders in random order, one at a time, bound "
              f"to the cores named. {platform.machine()}, {os.cpu_count()} cores, commit {commit}. "
              f"The load of the machine was {load:.1f} when measuring began: above 1 or 2, other "
@@ -301,31 +358,9 @@ def page(runs: list[Run], phases: list[Phases], parts: dict[str, speed_parts.Mea
              "suffer less. Compare contenders within a row."]
     if missing:
         lines += ["", "Not installed, so not compared: " + "; ".join(missing) + "."]
-    for count in cores:
-        lines += ["", f"## On {count} core{'s' if count > 1 else ''}", "",
-                  "| model | contender | wall s | CPU s | peak MB | our wall is shorter by "
-                  "| our CPU is less by | target | met |",
-                  "|---|---|---|---|---|---|---|---|---|"]
-        for model in models:
-            ours = medians.get((model, OURS, count))
-            for name in [OURS, *TARGETS]:
-                run = medians.get((model, name, count))
-                if run is None or ours is None:
-                    continue
-                row = (f"| {model} | {name} | {run.wall_s:.2f} | {run.cpu_s:.2f} "
-                       f"| {run.peak_mb:.0f} ")
-                if name == OURS:
-                    lines.append(row + "| | | | |")
-                    continue
-                faster, memory = TARGETS[name]
-                if any(Path(m).stem == model for m in MANY_CONTOURS):
-                    faster = MANY_CONTOURS_TARGET if name == "PrusaSlicer" else faster
-                ratio = run.wall_s / ours.wall_s
-                lean = memory is None or ours.peak_mb <= memory * run.peak_mb
-                met = ("yes" if ratio >= faster else "no") + ("" if lean else ", too much memory")
-                target = f"{faster:g} x" + (f", memory {memory:g} x" if memory else "")
-                lines.append(row + f"| {ratio:.1f} x | {run.cpu_s / ours.cpu_s:.1f} x "
-                                   f"| {target} | {met} |")
+    for narrow, count in works:
+        lines += ["", f"## On {count} core{'s' if count > 1 else ''}, narrow places {narrow}", "",
+                  *slicer_table(medians, narrow, count)]
     if phases:
         lines += ["", "## Judging beside planning", "",
                   "On one core, as `plan --phases` tells it: every layer is planned and judged, "
@@ -378,7 +413,11 @@ def main() -> None:
                             encoding="utf-8", check=False).stdout.strip() or "unknown"
     with tempfile.TemporaryDirectory() as folder:
         scratch = Path(folder)
-        commands, missing = contenders(arguments.program.resolve(), scratch)
+        commands: dict[str, dict[str, list[str]]] = {}
+        for narrow in ("filled", "left"):
+            commands[narrow], missing = contenders(arguments.program.resolve(), scratch,
+                                                   narrow == "filled")
+        works = [*(("filled", count) for count in cores), ("left", cores[0])]
         models = chosen_models(arguments.models, [n for n in arguments.only.split(",") if n])
         profiles = []
         if arguments.before and shutil.which("valgrind"):
@@ -393,11 +432,12 @@ def main() -> None:
         runs: list[Run] = []
         phases: list[Phases] = []
         for model in models:
-            runs += measure(model, commands, cores, arguments.repetitions, scratch)
+            runs += measure(arguments.program.resolve(), model, commands, works,
+                            arguments.repetitions, scratch)
             phases += measure_phases(arguments.program.resolve(), model, arguments.repetitions)
             # After every model, so that a long run that is ended leaves a page of what it has seen.
             write_page(arguments.out, runs,
-                       page(runs, phases, parts, missing, cores, arguments.repetitions, profiles,
+                       page(runs, phases, parts, missing, works, arguments.repetitions, profiles,
                             load, commit))
     print(arguments.out / "README.md")
 

@@ -1,6 +1,7 @@
 #pragma once
 /// What becomes of memory that is given back.
 
+#include <chrono>
 #include <forward_list>
 #include <utility>
 
@@ -8,10 +9,16 @@ namespace routebench {
 
 /// Keeps freed memory in the process from now on. For commands that do one job and end: what one
 /// step frees the next one wants, and having the system clear new pages takes as long as filling
-/// them. It is not asked for large pages: where a hypervisor takes back what is free, such a page
-/// may have to be got from it first, which was measured to take 4 ms, and small ones are got from
-/// what others have just left. Not where memory is measured or shared with children.
-void keep_freed_memory() noexcept;
+/// them. Large pages are asked for only where a small one takes `dear_page` or more. Where a
+/// hypervisor takes back what is free, a large page may have to be got from it first, which was
+/// measured to take 4 ms, as long as 512 small ones of 8 us each. Mostly those take 0.2 to 1.3 us;
+/// but 12 us where a hypervisor keeps the page tables, and there jobs take 0.69 to 0.86 of their
+/// time with large ones. Not where memory is measured or shared with children. Cost  that of four
+/// new pages.
+void keep_freed_memory(std::chrono::nanoseconds dear_page = std::chrono::microseconds(8)) noexcept;
+
+/// Does the same for a thread that is to work with others. To be called in it, first of all.
+void prepare_heap_of_thread() noexcept;
 
 /// Takes what has done its work and holds it until the process ends, when the system has all memory
 /// back at once: to give it back piece by piece takes longer.

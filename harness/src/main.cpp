@@ -11,6 +11,8 @@
 #include <new>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "routebench/geometry/error.hpp"
@@ -68,6 +70,31 @@ std::string explain(const CLI::App& app, const CLI::ParseError& error) {
          "--help)";
 }
 
+/// Adds the command of that name; all of them if there is none. Options are made for each, which
+/// for all takes as long as half a millisecond of work.
+void add_commands(CLI::App& app, int& exit_code, std::string_view name) {
+  using Add = void (*)(CLI::App&, int&);
+  constexpr std::pair<std::string_view, Add> kCommands[] = {
+      {"run", routebench::add_run_command},
+      {"plan", routebench::add_plan_command},
+      {"score", routebench::add_score_command},
+      {"slice", routebench::add_slice_command},
+      {"planners", routebench::add_planners_command},
+      {"check-planner", routebench::add_check_planner_command},
+      {"new-planner", routebench::add_new_planner_command},
+      {"plot", routebench::add_plot_command},
+      {"gate", routebench::add_gate_command},
+      {"report", routebench::add_report_command},
+      {"view", routebench::add_view_command},
+      {"export", routebench::add_export_command},
+      {"merge", routebench::add_merge_command},
+      {"reproduce", routebench::add_reproduce_command},
+      {"doctor", routebench::add_doctor_command}};
+  for (const auto& [known, add] : kCommands)
+    if (known == name) return add(app, exit_code);
+  for (const auto& [known, add] : kCommands) add(app, exit_code);
+}
+
 /// Throws Error for a first word that is neither a command nor an option.
 void check_command(const CLI::App& app, int argc, char** argv) {
   if (argc < 2 || argv[1][0] == '-') return;
@@ -112,21 +139,7 @@ int run(int argc, char** argv) {
       "error.";
   app.footer(exit_codes);  // commands inherit it
   int exit_code = 0;
-  routebench::add_run_command(app, exit_code);
-  routebench::add_plan_command(app, exit_code);
-  routebench::add_score_command(app, exit_code);
-  routebench::add_slice_command(app, exit_code);
-  routebench::add_planners_command(app, exit_code);
-  routebench::add_check_planner_command(app, exit_code);
-  routebench::add_new_planner_command(app, exit_code);
-  routebench::add_plot_command(app, exit_code);
-  routebench::add_gate_command(app, exit_code);
-  routebench::add_report_command(app, exit_code);
-  routebench::add_view_command(app, exit_code);
-  routebench::add_export_command(app, exit_code);
-  routebench::add_merge_command(app, exit_code);
-  routebench::add_reproduce_command(app, exit_code);
-  routebench::add_doctor_command(app, exit_code);
+  add_commands(app, exit_code, argc > 1 ? argv[1] : "");
   app.footer(exit_codes + "\nEach command has its own help: routebench plan --help.");
   try {
     check_command(app, argc, argv);

@@ -15,6 +15,8 @@
 #include <thread>
 #include <vector>
 
+#include "kept_memory.hpp"
+
 namespace routebench {
 namespace {
 
@@ -66,6 +68,7 @@ class Workers {
   }
 
   void wait_for_work() {
+    prepare_heap_of_thread();
     std::unique_lock lock(mutex_);
     while (true) {
       wake_.wait(lock, [this] { return is_over_ || places_ > 0; });
