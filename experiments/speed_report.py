@@ -313,11 +313,15 @@ def slicer_table(medians: dict[tuple[str, str, str, int], Run], narrow: str,
     lines = ["| model | contender | covered, % | wall s | CPU s | peak MB "
              "| our wall is shorter by | our CPU is less by | target | met |",
              "|---|---|---|---|---|---|---|---|---|---|"]
+    there = {name for _, name, *_ in medians}
     for model in sorted({model for model, *_ in medians}):
         ours = medians.get((model, OURS, narrow, cores))
         for name in [OURS, *TARGETS]:
             run = medians.get((model, name, narrow, cores))
-            if run is None or ours is None:
+            if ours is None or name not in there:
+                continue
+            if run is None:
+                lines.append(f"| {model} | {name} | - | fails | | | | | | |")
                 continue
             covered = f"{100 * run.covered:.1f}" if math.isfinite(run.covered) else "-"
             row = (f"| {model} | {name} | {covered} | {run.wall_s:.2f} | {run.cpu_s:.2f} "

@@ -70,8 +70,8 @@ std::string explain(const CLI::App& app, const CLI::ParseError& error) {
          "--help)";
 }
 
-/// Adds the command of that name; all of them if there is none. Options are made for each, which
-/// for all takes as long as half a millisecond of work.
+/// Adds the command of that name; all of them if there is none. To make the options of all takes
+/// half a millisecond or more.
 void add_commands(CLI::App& app, int& exit_code, std::string_view name) {
   using Add = void (*)(CLI::App&, int&);
   constexpr std::pair<std::string_view, Add> kCommands[] = {
