@@ -15,9 +15,13 @@ namespace routebench {
 namespace {
 
 constexpr int kMebibyte = 1 << 20;
-/// By how much heaps grow at least. It is as much as the allocator lets the heap of a thread have,
-/// which begins at a multiple of it.
-constexpr int kHeapBytes = 64 * kMebibyte;
+/// By how much heaps grow at least, mostly.
+constexpr int kGrowthBytes = 16 * kMebibyte;
+/// What the program's heap gets at once if it is to be of large pages: of addresses, not of memory.
+/// What grows later is of small ones.
+constexpr int kLargeBytes = 1024 * kMebibyte;
+/// All that the allocator lets the heap of a thread have, which begins at a multiple of it.
+constexpr int kThreadBytes = 64 * kMebibyte;
 
 std::atomic<bool> asks_for_large_pages = false;
 
@@ -51,16 +55,17 @@ std::uintptr_t take_idle_block(std::size_t bytes) noexcept {
 
 /// Asks for large pages in the calling thread's heap, from where the next one begins up to where
 /// `end_of(address in it)` says. Up to there blocks lie idle: a page that is partly there already
-/// stays in pieces.
+/// stays in pieces. False if the heap cannot grow.
 template <typename EndOf>
-void ask_for_large_pages(const EndOf& end_of) noexcept {
+bool ask_for_large_pages(const EndOf& end_of) noexcept {
   constexpr std::uintptr_t kLarge = 2 * kMebibyte;
   const std::uintptr_t block = take_idle_block(kLarge);
-  if (block == 0) return;
+  if (block == 0) return false;
   const std::uintptr_t begin = (block + 2 * kLarge - 1) / kLarge * kLarge, end = end_of(block);
   if (begin < end)
     ::madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE);  // no more than a hint
   take_idle_block(begin - block - kLarge);  // only now is anything written beyond it
+  return true;
 }
 
 }  // namespace
@@ -68,16 +73,18 @@ void ask_for_large_pages(const EndOf& end_of) noexcept {
 void keep_freed_memory(std::chrono::nanoseconds dear_page) noexcept {
   ::mallopt(M_MMAP_THRESHOLD, 1024 * kMebibyte);
   ::mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
-  ::mallopt(M_TOP_PAD, kHeapBytes);
+  ::mallopt(M_TOP_PAD, kGrowthBytes);
   if (!small_pages_take(dear_page)) return;
-  asks_for_large_pages = true;
-  ask_for_large_pages([](std::uintptr_t) { return reinterpret_cast<std::uintptr_t>(::sbrk(0)); });
+  ::mallopt(M_TOP_PAD, kLargeBytes);
+  asks_for_large_pages = ask_for_large_pages(
+      [](std::uintptr_t) { return reinterpret_cast<std::uintptr_t>(::sbrk(0)); });
+  ::mallopt(M_TOP_PAD, asks_for_large_pages ? kThreadBytes : kGrowthBytes);
 }
 
 void prepare_heap_of_thread() noexcept {
   if (!asks_for_large_pages) return;
   ask_for_large_pages(
-      [](std::uintptr_t block) { return (block / kHeapBytes + 1) * std::uintptr_t{kHeapBytes}; });
+      [](std::uintptr_t block) { return (block / kThreadBytes + 1) * kThreadBytes; });
 }
 
 }  // namespace routebench
