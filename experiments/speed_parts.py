@@ -101,6 +101,15 @@ def names() -> list[str]:
     return list(dict.fromkeys(name for part in PARTS for name in part.names()))
 
 
+def groups() -> list[list[str]]:
+    """The same, those together that have bounds of one kind, or none."""
+    kinds: dict[str, dict[str, None]] = {}
+    for part in PARTS:
+        kind = part.names()[-1].split("/")[0]
+        kinds.setdefault(kind, {}).update(dict.fromkeys(part.names()))
+    return [list(kind) for kind in kinds.values()]
+
+
 def medians(document: str) -> dict[str, Measured]:
     """The medians in what routebench-bench writes as JSON."""
     to_ms = {"ns": 1e-6, "us": 1e-3, "ms": 1.0, "s": 1e3}
@@ -111,18 +120,20 @@ def medians(document: str) -> dict[str, Measured]:
 
 
 def measure(program: Path, repetitions: int) -> dict[str, Measured]:
-    """Executes the benchmarks, those of all repetitions in random order.
+    """Executes the benchmarks, those of all repetitions in random order, and in a process of their
+    own those that share a bound: the memory that others leave behind changes what they take.
 
     Raises SystemExit if the program lacks one of them.
     """
-    wanted = names()
-    command = [str(program), "--benchmark_filter=^(" + "|".join(map(re.escape, wanted)) + ")$",
-               f"--benchmark_repetitions={max(2, repetitions)}",  # of one there is no median
-               "--benchmark_enable_random_interleaving=true",
-               "--benchmark_report_aggregates_only=true", "--benchmark_format=json"]
-    found = medians(subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
-                                   check=True, encoding="utf-8").stdout)
-    missing = [name for name in wanted if name not in found]
+    found: dict[str, Measured] = {}
+    for together in groups():
+        command = [str(program), "--benchmark_filter=^(" + "|".join(map(re.escape, together)) + ")$",
+                   f"--benchmark_repetitions={max(2, repetitions)}",  # of one there is no median
+                   "--benchmark_enable_random_interleaving=true",
+                   "--benchmark_report_aggregates_only=true", "--benchmark_format=json"]
+        found |= medians(subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
+                                        check=True, encoding="utf-8").stdout)
+    missing = [name for name in names() if name not in found]
     if missing:
         raise SystemExit(f"speed_parts.py: {program}: no benchmark '{missing[0]}'")
     return found

@@ -43,6 +43,12 @@ class SpeedParts(unittest.TestCase):
         for line in lines:
             self.assertEqual(line.count("|"), lines[0].count("|"), line)
 
+    def test_what_is_compared_is_measured_together(self) -> None:
+        groups = speed_parts.groups()
+        self.assertEqual([name for group in groups for name in group], speed_parts.names())
+        for part in speed_parts.PARTS:
+            self.assertTrue(any(set(part.names()) <= set(group) for group in groups), part.label)
+
     @unittest.skipUnless("ROUTEBENCH_BENCH" in os.environ, "ROUTEBENCH_BENCH names no program")
     def test_the_program_has_every_benchmark(self) -> None:
         listed = subprocess.run([os.environ["ROUTEBENCH_BENCH"], "--benchmark_list_tests=true"],
