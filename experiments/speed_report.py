@@ -7,12 +7,12 @@
 One process at a time, all contenders of a model in random order, again in every repetition; each is
 bound to the given number of cores. All have the same work: once all fill what is too narrow for a
 wall, as the planners do unless told otherwise, and once all leave it; how much of the parts each
-covers, as our judge sees it, tells whether they did. Wall time, CPU time and peak memory are those of the process and
-its children as the kernel counts them; the page shows medians. What judging costs beside planning
-is told by the program itself, for every layer. With --bench, a routebench-bench, parts of the job
-stand beside what bounds them. With --before, an older build of the program, and valgrind installed,
-it also tells how many instructions named functions take before and after: that does not depend on
-what else the machine does.
+covers, as our judge sees it, tells whether they did. Wall time, CPU time and peak memory are those
+of the process and its children as the kernel counts them; the page shows medians. What judging
+costs beside planning is told by the program itself, for every layer. With --bench, a routebench-
+bench, parts of the job stand beside what bounds them. With --before, an older build of the program,
+and valgrind installed, it also tells how many instructions named functions take before and after:
+that does not depend on what else the machine does.
 """
 
 from __future__ import annotations
@@ -89,7 +89,8 @@ def ini(prusa: bool, fills_narrow: bool) -> str:
         "layer_height": 0.2, "first_layer_height": 0.2, "perimeters": 2, "fill_density": "20%",
         "fill_pattern": "rectilinear", "fill_angle": 45, "infill_overlap": "25%",
         "top_solid_layers": 3, "bottom_solid_layers": 3, "solid_infill_below_area": 0,
-        "thin_walls": int(fills_narrow), "extra_perimeters": 0, "overhangs": 0, "skirts": 0, "brim_width": 0,
+        "thin_walls": int(fills_narrow), "extra_perimeters": 0, "overhangs": 0, "skirts": 0,
+        "brim_width": 0,
         "support_material": 0, "cooling": 0, "nozzle_diameter": 0.4, "filament_diameter": 1.75,
         "seam_position": "nearest", "retract_length": 0.8, "retract_speed": 40,
         "retract_before_travel": 2, "retract_layer_change": 0, "retract_lift": 0, "wipe": 0,
@@ -117,7 +118,8 @@ def cura_settings(fills_narrow: bool) -> list[str]:
         "bottom_layers": 3, "initial_bottom_layers": 3, "roofing_layer_count": 0,
         "infill_line_distance": round(SPACING_MM / 0.2, 5), "infill_pattern": "zigzag",
         "zig_zaggify_infill": "true", "infill_wipe_dist": 0, "initial_layer_line_width_factor": 100,
-        "adhesion_type": "none", "support_enable": "false", "fill_outline_gaps": str(fills_narrow).lower(),
+        "adhesion_type": "none", "support_enable": "false",
+        "fill_outline_gaps": str(fills_narrow).lower(),
         "fill_perimeter_gaps": "everywhere" if fills_narrow else "nowhere",
         "alternate_extra_perimeter": "false",
         "retraction_combing": "off", "retraction_amount": 0.8, "retraction_min_travel": 2,
@@ -354,7 +356,8 @@ def page(runs: list[Run], phases: list[Phases], parts: dict[str, speed_parts.Mea
              "so the slicers are told to find thin walls and to fill gaps. The last table is of "
              "jobs that leave such places: ours with `" + " ".join(LEAVE_NARROW) + "`, theirs "
              "without these settings. How much of what is to be covered each file covers is judged "
-             "once, as by `plan --from-gcode`.", "",
+             "once, as by `plan --from-gcode`. Who fails has written no file: with thin walls "
+             "PrusaSlicer refuses models whose first layer it would leave empty.", "",
              f"Medians of {repetitions} run(s), contenders in random order, one at a time, bound "
              f"to the cores named. {platform.machine()}, {os.cpu_count()} cores, commit {commit}. "
              f"The load of the machine was {load:.1f} when measuring began: above 1 or 2, other "
