@@ -9,10 +9,10 @@ bound to the given number of cores. All have the same work: once all fill what i
 wall, as the planners do unless told otherwise, and once all leave it; how much of the parts each
 covers, as our judge sees it, tells whether they did. Wall time, CPU time and peak memory are those
 of the process and its children as the kernel counts them; the page shows medians. What judging
-costs beside planning is told by the program itself, for every layer. With --bench, a routebench-
-bench, parts of the job stand beside what bounds them. With --before, an older build of the program,
-and valgrind installed, it also tells how many instructions named functions take before and after:
-that does not depend on what else the machine does.
+costs beside planning is told by the program itself, for every layer. With --bench, a
+routebench-bench, parts of the job stand beside what bounds them. With --before, an older build of
+the program, and valgrind installed, it also tells how many instructions named functions take before
+and after: that does not depend on what else the machine does.
 """
 
 from __future__ import annotations
@@ -90,12 +90,12 @@ def ini(prusa: bool, fills_narrow: bool) -> str:
         "fill_pattern": "rectilinear", "fill_angle": 45, "infill_overlap": "25%",
         "top_solid_layers": 3, "bottom_solid_layers": 3, "solid_infill_below_area": 0,
         "thin_walls": int(fills_narrow), "extra_perimeters": 0, "overhangs": 0, "skirts": 0,
-        "brim_width": 0,
-        "support_material": 0, "cooling": 0, "nozzle_diameter": 0.4, "filament_diameter": 1.75,
-        "seam_position": "nearest", "retract_length": 0.8, "retract_speed": 40,
-        "retract_before_travel": 2, "retract_layer_change": 0, "retract_lift": 0, "wipe": 0,
-        "only_retract_when_crossing_perimeters": 0, "avoid_crossing_perimeters": 0,
-        "bed_shape": "0x0,400x0,400x400,0x400", "travel_speed": 150, "first_layer_speed": 60,
+        "brim_width": 0, "support_material": 0, "cooling": 0, "nozzle_diameter": 0.4,
+        "filament_diameter": 1.75, "seam_position": "nearest", "retract_length": 0.8,
+        "retract_speed": 40, "retract_before_travel": 2, "retract_layer_change": 0,
+        "retract_lift": 0, "wipe": 0, "only_retract_when_crossing_perimeters": 0,
+        "avoid_crossing_perimeters": 0, "bed_shape": "0x0,400x0,400x400,0x400",
+        "travel_speed": 150, "first_layer_speed": 60,
     }
     for part in ("", "first_layer_", "perimeter_", "external_perimeter_", "infill_",
                  "solid_infill_", "top_infill_"):
