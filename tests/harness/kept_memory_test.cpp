@@ -44,10 +44,11 @@ std::unique_ptr<char[]> new_block() {
   return block;
 }
 
+/// Whether the system takes such a wish and tells of it.
 bool system_has_large_pages() {
   void* const memory =
       ::mmap(nullptr, kBytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-  const bool has = ::madvise(memory, kBytes, MADV_HUGEPAGE) == 0;
+  const bool has = ::madvise(memory, kBytes, MADV_HUGEPAGE) == 0 && is_for_large_pages(memory);
   ::munmap(memory, kBytes);
   return has;
 }
