@@ -263,7 +263,11 @@ def write_page(folder: Path, runs: list[Run], text: str) -> None:
 
 
 def instructions(program: Path, model: str, scratch: Path, judged: bool) -> dict[str, float] | None:
-    """Instructions of the profiled functions with all that they call."""
+    """Instructions of the profiled functions with all that they call.
+
+    Without centre lines: those ask CGAL for exact predicates, which round in directions that
+    valgrind cannot.
+    """
     file = scratch / "callgrind.out"
     command = ["valgrind", "--tool=callgrind", f"--callgrind-out-file={file}", str(program), "plan",
                model, *PLANNERS, *LEAVE_NARROW, *task_options(), "--jobs", "1", "--gcode",
@@ -356,8 +360,8 @@ def page(runs: list[Run], phases: list[Phases], parts: dict[str, speed_parts.Mea
              "so the slicers are told to find thin walls and to fill gaps. The last table is of "
              "jobs that leave such places: ours with `" + " ".join(LEAVE_NARROW) + "`, theirs "
              "without these settings. How much of what is to be covered each file covers is judged "
-             "once, as by `plan --from-gcode`. Who fails has written no file: with thin walls "
-             "PrusaSlicer refuses models whose first layer it would leave empty.", "",
+             "once, as by `plan --from-gcode`. Who fails has ended with an "
+             "error.", "",
              f"Medians of {repetitions} run(s), contenders in random order, one at a time, bound "
              f"to the cores named. {platform.machine()}, {os.cpu_count()} cores, commit {commit}. "
              f"The load of the machine was {load:.1f} when measuring began: above 1 or 2, other "
@@ -374,7 +378,7 @@ def page(runs: list[Run], phases: list[Phases], parts: dict[str, speed_parts.Mea
                   "equal ones, too.", "", *judging_table(phases)]
     if parts:
         lines += ["", "## Parts of the job", "",
-                  "Measured by `routebench-bench` beside what cannot be avoided, in one run; wall "
+                  "Measured by `routebench-bench`, a part and its bound in one process; wall "
                   "times, medians.", "", *speed_parts.table(parts)]
     if profiles:
         lines += ["", "## Instructions before and after", "",

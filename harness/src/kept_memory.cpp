@@ -25,8 +25,8 @@ constexpr int kThreadBytes = 64 * kMebibyte;
 
 std::atomic<bool> asks_for_large_pages = false;
 
-/// Whether each new page takes so long.
-bool small_pages_take(std::chrono::nanoseconds at_least) noexcept {
+/// Whether a new page takes so long.
+bool small_page_takes(std::chrono::nanoseconds at_least) noexcept {
   using Clock = std::chrono::steady_clock;
   constexpr std::size_t kPages = 4;
   const auto page = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
@@ -74,7 +74,7 @@ void keep_freed_memory(std::chrono::nanoseconds dear_page) noexcept {
   ::mallopt(M_MMAP_THRESHOLD, 1024 * kMebibyte);
   ::mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
   ::mallopt(M_TOP_PAD, kGrowthBytes);
-  if (!small_pages_take(dear_page)) return;
+  if (!small_page_takes(dear_page)) return;
   ::mallopt(M_TOP_PAD, kLargeBytes);
   asks_for_large_pages = ask_for_large_pages(
       [](std::uintptr_t) { return reinterpret_cast<std::uintptr_t>(::sbrk(0)); });

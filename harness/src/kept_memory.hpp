@@ -11,13 +11,14 @@ namespace routebench {
 /// step frees the next one wants, and having the system clear new pages takes as long as filling
 /// them. Large pages are asked for only where a small one takes `dear_page` or more. Where a
 /// hypervisor takes back what is free, a large page may have to be got from it first, which was
-/// measured to take 4 ms, as long as 512 small ones of 8 us each. Mostly those take 0.2 to 1.3 us;
-/// but 12 us where a hypervisor keeps the page tables, and there jobs take 0.69 to 0.86 of their
-/// time with large ones. Not where memory is measured or shared with children. Cost  that of four
-/// new pages.
+/// measured to take 4 ms, as long as 512 small ones of 8 us each; there those took 1.3 us. But they
+/// took 12 us where a hypervisor keeps the page tables, and jobs 0.69 to 0.86 of their time with
+/// large ones. Not where memory is measured or shared with children. Takes no longer than four new
+/// pages do.
 void keep_freed_memory(std::chrono::nanoseconds dear_page = std::chrono::microseconds(8)) noexcept;
 
-/// Does the same for a thread that is to work with others. To be called in it, first of all.
+/// Asks for large pages in the calling thread's heap, too, if keep_freed_memory() has asked for
+/// them in the program's. For new threads, before they allocate anything.
 void prepare_heap_of_thread() noexcept;
 
 /// Takes what has done its work and holds it until the process ends, when the system has all memory

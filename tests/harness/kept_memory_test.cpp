@@ -8,6 +8,7 @@
 #include <cstring>
 #include <fstream>
 #include <memory>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <thread>
@@ -20,9 +21,8 @@ constexpr bool kHasOwnAllocator = false;
 
 namespace {
 
-/// Whether the system has been asked for large pages where an address lies.
-bool is_for_large_pages(const void* at) {
-  const auto address = reinterpret_cast<std::uintptr_t>(at);
+/// What the system tells of the memory at an address; nothing if there is none.
+std::optional<std::string> flags_at(std::uintptr_t address) {
   std::ifstream maps("/proc/self/smaps");
   bool is_here = false;
   for (std::string line; std::getline(maps, line);) {
@@ -31,9 +31,16 @@ bool is_for_large_pages(const void* at) {
     char dash = 0;
     if (words >> std::hex >> begin >> dash >> end && dash == '-')
       is_here = begin <= address && address < end;
-    if (is_here && line.starts_with("VmFlags:")) return line.find(" hg") != std::string::npos;
+    if (is_here && line.starts_with("VmFlags:")) return line;
   }
-  return false;
+  return std::nullopt;
+}
+
+std::uintptr_t address_of(const void* at) { return reinterpret_cast<std::uintptr_t>(at); }
+
+/// Whether it has been asked for large pages there.
+bool is_for_large_pages(const void* at) {
+  return flags_at(address_of(at)).value_or("").find(" hg") != std::string::npos;
 }
 
 constexpr std::size_t kBytes = 3 << 20;
@@ -53,20 +60,26 @@ bool system_has_large_pages() {
   return has;
 }
 
-TEST(KeptMemory, IsThereForTheNext) {
-  if (kHasOwnAllocator) GTEST_SKIP() << "the sanitizer has an allocator of its own";
-  routebench::keep_freed_memory(std::chrono::hours(1));
-  const void* const freed = new_block().get();
-  EXPECT_EQ(new_block().get(), freed);
+/// Looks at this thread's heap and at that of a new one.
+void expect_wish_for_large_pages(bool asked) {
+  EXPECT_EQ(is_for_large_pages(new_block().get()), asked);
+  std::thread([asked] {
+    routebench::prepare_heap_of_thread();
+    EXPECT_EQ(is_for_large_pages(new_block().get()), asked);
+  }).join();
 }
 
-TEST(KeptMemory, AsksForNoneWhereSmallOnesAreCheap) {
+TEST(KeptMemory, IsThereForTheNext) {
+  if (kHasOwnAllocator) GTEST_SKIP() << "the sanitizer has an allocator of its own";
+  if (!flags_at(address_of(&kBytes))) GTEST_SKIP() << "the system does not tell of memory";
   routebench::keep_freed_memory(std::chrono::hours(1));
-  EXPECT_FALSE(is_for_large_pages(new_block().get()));
-  std::thread([] {
-    routebench::prepare_heap_of_thread();
-    EXPECT_FALSE(is_for_large_pages(new_block().get()));
-  }).join();
+  const std::uintptr_t freed = address_of(new_block().get());
+  EXPECT_TRUE(flags_at(freed));
+}
+
+TEST(KeptMemory, AsksForNoLargePagesWhereSmallOnesAreCheap) {
+  routebench::keep_freed_memory(std::chrono::hours(1));
+  expect_wish_for_large_pages(false);
 }
 
 // The last one: what has been asked for stays.
@@ -74,11 +87,7 @@ TEST(KeptMemory, AsksForLargePagesWhereSmallOnesAreDear) {
   if (kHasOwnAllocator) GTEST_SKIP() << "the sanitizer has an allocator of its own";
   if (!system_has_large_pages()) GTEST_SKIP() << "the system has no large pages";
   routebench::keep_freed_memory(std::chrono::nanoseconds(0));
-  EXPECT_TRUE(is_for_large_pages(new_block().get()));
-  std::thread([] {
-    routebench::prepare_heap_of_thread();
-    EXPECT_TRUE(is_for_large_pages(new_block().get()));
-  }).join();
+  expect_wish_for_large_pages(true);
 }
 
 }  // namespace
