@@ -215,7 +215,9 @@ class Concentric final : public Planner {
             1};
   }
 
-  explicit Concentric(const Params& params) : params_(resolved(params)) {}
+  explicit Concentric(const Params& params) : params_(resolved(params)) {
+    make_ready(params_.method);
+  }
 
   [[nodiscard]] Route plan(const Layer& layer, const PlanContext& context) const override {
     const Frame frame(layer, context);

@@ -8,14 +8,18 @@
 #include <cstdlib>
 #include <exception>
 #include <iostream>
+#include <iterator>
 #include <new>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "kept_memory.hpp"
 #include "routebench/geometry/error.hpp"
+#include "routebench/geometry/lazy_library.hpp"
 #include "routebench/harness/commands.hpp"
 #include "routebench/harness/version.hpp"
 #include "routebench/planning/params.hpp"
@@ -70,29 +74,36 @@ std::string explain(const CLI::App& app, const CLI::ParseError& error) {
          "--help)";
 }
 
+constexpr routebench::Command kCommands[] = {
+    {"plan", routebench::add_plan_command, true},
+    {"score", routebench::add_score_command},
+    {"slice", routebench::add_slice_command, true},
+    {"planners", routebench::add_planners_command},
+    {"check-planner", routebench::add_check_planner_command},
+    {"new-planner", routebench::add_new_planner_command}};
+
+std::span<const routebench::Command> experiment_commands() {
+  using Commands = decltype(routebench_experiment_commands);
+  return reinterpret_cast<Commands*>(routebench::function_in_library(
+      ROUTEBENCH_EXPERIMENTS_LIBRARY, "routebench_experiment_commands",
+      "the library of commands on experiments"))();
+}
+
 /// Adds the command of that name; all of them if there is none. To make the options of all takes
-/// half a millisecond or more.
+/// half a millisecond or more, to load those on experiments as long again.
 void add_commands(CLI::App& app, int& exit_code, std::string_view name) {
-  using Add = void (*)(CLI::App&, int&);
-  constexpr std::pair<std::string_view, Add> kCommands[] = {
-      {"run", routebench::add_run_command},
-      {"plan", routebench::add_plan_command},
-      {"score", routebench::add_score_command},
-      {"slice", routebench::add_slice_command},
-      {"planners", routebench::add_planners_command},
-      {"check-planner", routebench::add_check_planner_command},
-      {"new-planner", routebench::add_new_planner_command},
-      {"plot", routebench::add_plot_command},
-      {"gate", routebench::add_gate_command},
-      {"report", routebench::add_report_command},
-      {"view", routebench::add_view_command},
-      {"export", routebench::add_export_command},
-      {"merge", routebench::add_merge_command},
-      {"reproduce", routebench::add_reproduce_command},
-      {"doctor", routebench::add_doctor_command}};
-  for (const auto& [known, add] : kCommands)
-    if (known == name) return add(app, exit_code);
-  for (const auto& [known, add] : kCommands) add(app, exit_code);
+  const auto is_called = [&](const routebench::Command& command) { return command.name == name; };
+  const auto* const own = std::ranges::find_if(kCommands, is_called);
+  if (own != std::end(kCommands)) {
+    if (own->keeps_memory)
+      routebench::keep_freed_memory();  // its options are the first to want some
+    return own->add(app, exit_code);
+  }
+  const std::span<const routebench::Command> loaded = experiment_commands();
+  const auto one = std::ranges::find_if(loaded, is_called);
+  if (one != loaded.end()) return one->add(app, exit_code);
+  for (const auto& commands : {std::span<const routebench::Command>(kCommands), loaded})
+    for (const routebench::Command& command : commands) command.add(app, exit_code);
 }
 
 /// Throws Error for a first word that is neither a command nor an option.
@@ -139,9 +150,9 @@ int run(int argc, char** argv) {
       "error.";
   app.footer(exit_codes);  // commands inherit it
   int exit_code = 0;
-  add_commands(app, exit_code, argc > 1 ? argv[1] : "");
-  app.footer(exit_codes + "\nEach command has its own help: routebench plan --help.");
   try {
+    add_commands(app, exit_code, argc > 1 ? argv[1] : "");
+    app.footer(exit_codes + "\nEach command has its own help: routebench plan --help.");
     check_command(app, argc, argv);
     app.parse(argc, argv);
     if (!std::cout.flush()) return complain(kNoOutput, kExitBadInput);

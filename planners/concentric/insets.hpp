@@ -15,6 +15,9 @@ enum class Method {
   kSkeleton  ///< all further ones from a straight skeleton of the first
 };
 
+/// Loads what a method needs, so that no planning has to wait for it. Throws   Error{kInternal}.
+void make_ready(Method method);
+
 /// What lies at least first_mm, first_mm + step_mm, ... from the boundary (with mitred corners),
 /// until nothing is left. Throws   Error{kStopped}.
 /// Cost   clipper: n log n for each inset; skeleton: n log n to n^2 once, then linear for each.

@@ -140,6 +140,19 @@ TEST(SliceMesh, UprightWallsHaveTheSameContourInEveryLayer) {
   }
 }
 
+TEST(SliceMesh, LayersWithAsManyCutsKeepTheirOwnContours) {
+  const Mesh boxes[] = {box({0, 0, 0}, {10, 10, 1}), box({1, 1, 1}, {9, 9, 2}),
+                        box({0, 0, 2}, {10, 10, 3})};
+  const auto layers = layers_of(together(together(boxes[0], boxes[1]), boxes[2]), 0.2);
+  ASSERT_EQ(layers.size(), 15u);
+  for (const Layer& layer : layers) {
+    const auto storey = static_cast<std::size_t>(layer.index / 5);
+    // Alone, from the same bed on.
+    const auto alone = layers_of(boxes[storey], 0.2);
+    EXPECT_EQ(layer.polygons, alone[static_cast<std::size_t>(layer.index)].polygons) << layer.index;
+  }
+}
+
 TEST(Slivers, SpikesAndNotchesWithoutWidthGoAndNothingElse) {
   // Cut at any place along their sides, on a square and with a corner of their own beside them.
   const Ring square{{10, 0}, {10, 10}, {0, 10}, {0, 0}};

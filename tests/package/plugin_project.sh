@@ -34,14 +34,25 @@ routebench.plan(routebench.slice_model('shape:box'), 'greedy_shell')"
 "$program" plan shape:box --fill my_python --plugin "$work/my_python/my_python.py" \
   --task perimeters=0 --task density=1 >/dev/null
 
-# What a package lacks is named, and costs nothing but the files that want it.
+# What a package lacks is named, and costs nothing but the calls that want it.
 printf 'PK\3\4' >"$work/part.3mf"
-find "$work/moved" -name 'libroutebench_3mf.so*' -exec mv {} "$work" \;
-complaint=$("$program" slice "$work/part.3mf" 2>&1 >/dev/null) && code=0 || code=$?
-if [ "$code" != 3 ] || [[ $complaint != *"the reader of 3MF files cannot be loaded: "*libroutebench_3mf* ]]; then
-  echo "plugin_project.sh: without the reader of 3MF files: exit code $code, $complaint" >&2
-  exit 1
-fi
+without() {  # LIBRARY CODE WHAT COMMAND...: a call without that library
+  local library=$1 expected=$2 what=$3 code complaint
+  shift 3
+  mkdir "$work/$library"
+  find "$work/moved" -name "libroutebench_$library.so*" -exec mv {} "$work/$library" \;
+  complaint=$("$program" "$@" 2>&1 >/dev/null) && code=0 || code=$?
+  mv "$work/$library"/* "$(dirname "$(find "$work/moved" -name 'libroutebench_geometry.so')")"
+  if [ "$code" != "$expected" ] || [[ $complaint != *"$what cannot be loaded: "*"$library"* ]]; then
+    echo "plugin_project.sh: without $what: exit code $code, $complaint" >&2
+    exit 1
+  fi
+}
+without 3mf 3 "the reader of 3MF files" slice "$work/part.3mf"
+without experiments 3 "the library of commands on experiments" run nothing.toml
+by_skeleton=(plan shape:box --fill concentric --set fill.method=skeleton --task perimeters=0)
+without skeleton 1 "CGAL's straight skeleton" "${by_skeleton[@]}"
+"$program" "${by_skeleton[@]}" --task density=1 >/dev/null
 
 # The page's first block of commands, one a line.
 mapfile -t commands < <(sed -n '/^```sh$/,/^```$/{/^```/!p;/^```$/q}' "$source/planners/README.md")

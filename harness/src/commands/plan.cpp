@@ -95,7 +95,6 @@ class Plan {
         planners_(load_planners(arguments.plugins)),
         parallel_for_(parallel_loop(arguments.jobs)),
         offset_(offset_of(arguments.place.offset)) {
-    keep_freed_memory();
     require_all_loaded(planners_);
     print_refused(planners_);
     add_commands(planners_, std::vector{arguments.shell, arguments.fill});

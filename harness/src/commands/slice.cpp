@@ -95,7 +95,6 @@ void print_container(const std::string& model, const VoxelContainer& container) 
 }
 
 void slice(const SliceArguments& arguments) {
-  keep_freed_memory();
   const Task task = task_of(arguments.task);
   const SliceMethod method = slice_method(arguments.method);
   if (arguments.cell_mm && method != SliceMethod::kVoxel)
