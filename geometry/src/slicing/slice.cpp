@@ -215,6 +215,48 @@ std::vector<Ring> contours_of(std::span<const slicing::Cut> cuts, const Mesh& me
   return std::move(contours.rings);
 }
 
+/// Gives each layer its polygons; returns what was closed for them.
+std::vector<Closing> fill_layers(const CutTable& table, const Mesh& mesh,
+                                 const SliceOptions& options, std::vector<Layer>& layers,
+                                 const ParallelFor& parallel_for) {
+  std::vector<Closing> closings(layers.size());
+  std::vector<std::vector<Ring>> contours(layers.size());
+  const auto make_polygons = [&](std::size_t i) {
+    // Where facets gape by a crack they also overlap by as much; two sides that were straightened
+    // may have moved apart by twice what one may.
+    const double sliver_mm =
+        std::max({slicing::kSliverMm, closings[i].widest_crack_mm, 2 * options.straight_mm});
+    layers[i].polygons = slicing::without_slivers(
+        polygons_from_rings(std::move(contours[i]), FillRule::kNonZero), sliver_mm);
+  };
+  // Technical parts have the same contours on many layers, one above the other. There the lowest is
+  // done for all; but contours are kept for that only where it is likely, as most layers' would be
+  // memory that nothing else needs.
+  const auto resembles_next = [&](std::size_t i) {
+    return i + 1 < contours.size() && table.layer(i).size() == table.layer(i + 1).size();
+  };
+  parallel_for(contours.size(), [&](std::size_t i) {
+    contours[i] = contours_of(table.layer(i), mesh, layers[i].z_mm, options, closings[i]);
+    if (!resembles_next(i) && (i == 0 || !resembles_next(i - 1))) make_polygons(i);
+  });
+  std::vector<std::size_t> first(contours.size()), kept, equal;
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    const bool is_equal = i > 0 && resembles_next(i - 1) && contours[i] == contours[i - 1] &&
+                          closings[i].widest_crack_mm == closings[i - 1].widest_crack_mm;
+    first[i] = is_equal ? first[i - 1] : i;
+    if (is_equal)
+      equal.push_back(i);
+    else if (!contours[i].empty())
+      kept.push_back(i);
+  }
+  for (const std::size_t i : equal) contours[i] = std::vector<Ring>{};  // memory for the copies
+  parallel_for(kept.size(), [&](std::size_t k) { make_polygons(kept[k]); });
+  parallel_for(equal.size(), [&](std::size_t k) {
+    layers[equal[k]].polygons = layers[first[equal[k]]].polygons;
+  });
+  return closings;
+}
+
 constexpr double kMostVoxelBytes = 1U << 30U;
 
 /// The container of a mesh, or a refusal if it is too large.
@@ -313,42 +355,8 @@ Slices slice_mesh(const Mesh& mesh, const SliceOptions& options, const std::stri
     layer.height_mm = options.layer_height_mm;
   }
   const CutTable table = cut_triangles(mesh, planes, options.method, model_name, parallel_for);
-  std::vector<Closing> closings(slices.layers.size());
-  std::vector<std::vector<Ring>> contours(slices.layers.size());
-  const auto make_polygons = [&](std::size_t i) {
-    // Where facets gape by a crack they also overlap by as much; two sides that were straightened
-    // may have moved apart by twice what one may.
-    const double sliver_mm =
-        std::max({slicing::kSliverMm, closings[i].widest_crack_mm, 2 * options.straight_mm});
-    slices.layers[i].polygons = slicing::without_slivers(
-        polygons_from_rings(std::move(contours[i]), FillRule::kNonZero), sliver_mm);
-  };
-  // Technical parts have the same contours on many layers, one above the other. There the lowest is
-  // done for all; but contours are kept for that only where it is likely, as most layers' would be
-  // memory that nothing else needs.
-  const auto resembles_next = [&](std::size_t i) {
-    return i + 1 < contours.size() && table.layer(i).size() == table.layer(i + 1).size();
-  };
-  parallel_for(contours.size(), [&](std::size_t i) {
-    contours[i] = contours_of(table.layer(i), mesh, slices.layers[i].z_mm, options, closings[i]);
-    if (!resembles_next(i) && (i == 0 || !resembles_next(i - 1))) make_polygons(i);
-  });
-  std::vector<std::size_t> first(contours.size()), kept, equal;
-  for (std::size_t i = 0; i < first.size(); ++i) {
-    const bool is_equal = i > 0 && resembles_next(i - 1) && contours[i] == contours[i - 1] &&
-                          closings[i].widest_crack_mm == closings[i - 1].widest_crack_mm;
-    first[i] = is_equal ? first[i - 1] : i;
-    if (is_equal)
-      equal.push_back(i);
-    else if (!contours[i].empty())
-      kept.push_back(i);
-  }
-  for (const std::size_t i : equal) contours[i] = std::vector<Ring>{};  // memory for the copies
-  parallel_for(kept.size(), [&](std::size_t k) { make_polygons(kept[k]); });
-  parallel_for(equal.size(), [&](std::size_t k) {
-    slices.layers[equal[k]].polygons = slices.layers[first[equal[k]]].polygons;
-  });
-
+  const std::vector<Closing> closings =
+      fill_layers(table, mesh, options, slices.layers, parallel_for);
   for (std::size_t i = 0; i < slices.layers.size(); ++i) {
     slices.layers[i].repaired = closings[i].widest_open_mm > 0;
     if (slices.layers[i].repaired && !options.repair)
