@@ -90,7 +90,7 @@ std::span<const routebench::Command> experiment_commands() {
 }
 
 /// Adds the command of that name; all of them if there is none. To make the options of all takes
-/// half a millisecond or more, to load those on experiments as long again.
+/// half a millisecond or more, and those on experiments have to be loaded first.
 void add_commands(CLI::App& app, int& exit_code, std::string_view name) {
   const auto is_called = [&](const routebench::Command& command) { return command.name == name; };
   const auto* const own = std::ranges::find_if(kCommands, is_called);
