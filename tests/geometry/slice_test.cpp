@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -137,6 +138,45 @@ TEST(SliceMesh, UprightWallsHaveTheSameContourInEveryLayer) {
         slice_mesh(load_model(spec).mesh, {.straight_mm = 0.001}, spec).layers;
     ASSERT_GT(layers.size(), 3u);
     for (const Layer& layer : layers) EXPECT_EQ(layer.polygons, layers[0].polygons);
+  }
+}
+
+TEST(SliceMesh, LeaningWallsKeepTheirPlaceInEveryLayer) {
+  constexpr double kStraightMm = 0.01, kHeightMm = 10;
+  for (const double lean_mm : {0.0, 1e-5, 2e-4, 1e-3, 0.1, 5.0}) {
+    SCOPED_TRACE(lean_mm);
+    Mesh mesh = box({0, 0, 0}, {20, 20, kHeightMm});
+    for (Point3& p : mesh.vertices)
+      if (p.z > 0) p.x += lean_mm;
+    const Slices slices =
+        slice_mesh(mesh, {.layer_height_mm = 0.5, .straight_mm = kStraightMm}, "test");
+    for (const Layer& layer : slices.layers) {
+      const Box2 found = bounding_box(layer.polygons);
+      const double left_mm = lean_mm * layer.z_mm / kHeightMm;
+      EXPECT_NEAR(found.lower.x, left_mm, kStraightMm / 100);
+      EXPECT_NEAR(found.upper.x, 20 + left_mm, kStraightMm / 100);
+    }
+  }
+}
+
+TEST(SliceMesh, AGapInAnUprightWallIsAsWideAsItIsInEachLayer) {
+  Mesh mesh = box({0, 0, 0}, {10, 10, 10});
+  const auto is_wall = [&](const auto& corners) {
+    const auto z = [&](std::size_t i) { return mesh.vertices[corners[i]].z; };
+    return z(0) != z(1) || z(1) != z(2);
+  };
+  // The gap is nothing at one end of the wall and the whole wall at the other.
+  mesh.triangles.erase(std::find_if(mesh.triangles.begin(), mesh.triangles.end(), is_wall));
+  for (const double straight_mm : {0.0, 0.01}) {
+    SliceOptions options{.layer_height_mm = 0.25, .repair = true, .crack_mm = 1};
+    options.straight_mm = straight_mm;
+    const Slices slices = slice_mesh(mesh, options, "test");
+    EXPECT_EQ(slices.report.cracks_closed, 4u);
+    EXPECT_NEAR(slices.report.widest_crack_mm, 0.875, 1e-6);
+    EXPECT_EQ(slices.report.repaired_layers, 36u);
+    EXPECT_NEAR(slices.report.widest_gap_mm, 9.875, 1e-6);
+    options.repair = false;
+    EXPECT_NE(refusal(mesh, options), "");
   }
 }
 

@@ -194,7 +194,7 @@ Contours chain_by_points(std::span<const Cut> cuts, const Mesh& mesh, double z_m
 
 Contours chain_cuts(std::span<const Cut> cuts, const Mesh& mesh, double z_mm) {
   if (std::optional<std::vector<Ring>> rings = chain_by_edges(cuts, mesh, z_mm))
-    return {std::move(*rings), {}};
+    return {std::move(*rings), {}, true};
   return chain_by_points(cuts, mesh, z_mm);
 }
 

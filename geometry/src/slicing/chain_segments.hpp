@@ -18,6 +18,7 @@ using Chain = std::vector<Point2>;
 struct Contours {
   std::vector<Ring> rings;  ///< without repeated neighbours
   std::vector<Chain> open;
+  bool at_edges = false;  ///< joined at mesh edges, where all of them could be
 };
 
 /// Joins the cuts of one layer end to end.

@@ -208,6 +208,23 @@ int Planes::level(double z_mm) const noexcept {
   return level;
 }
 
+bool run_straight_up(std::span<const Cut> lower, std::span<const Cut> upper, const Mesh& mesh,
+                     double lean_mm) {
+  const auto is_upright = [&](const Cut& cut) {
+    const Point3 &from = mesh.vertices[cut.alone], &to = mesh.vertices[cut.from_end],
+                 &other = mesh.vertices[cut.to_end];
+    const Point3 a{to.x - from.x, to.y - from.y, to.z - from.z};
+    const Point3 b{other.x - from.x, other.y - from.y, other.z - from.z};
+    // The normal's slope is what the triangle leans by on its way up.
+    const Point3 normal{a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+    const double way_up = std::max(a.z * a.z, b.z * b.z);  // the vertex alone is lowest or highest
+    return normal.z * normal.z * way_up <=
+           lean_mm * lean_mm * (normal.x * normal.x + normal.y * normal.y);
+  };
+  return std::equal(lower.begin(), lower.end(), upper.begin(), upper.end(),
+                    [&](const Cut& a, const Cut& b) { return a == b && is_upright(a); });
+}
+
 CutTable cut_triangles(const Mesh& mesh, const Planes& planes, SliceMethod method,
                        const std::string& model_name, const ParallelFor& parallel_for) {
   const LevelledMesh levelled(mesh, planes, parallel_for);

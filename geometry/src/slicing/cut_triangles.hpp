@@ -47,6 +47,7 @@ struct Cut {
 
   [[nodiscard]] EdgeKey from() const noexcept { return edge_key(alone, from_end); }
   [[nodiscard]] EdgeKey to() const noexcept { return edge_key(alone, to_end); }
+  friend bool operator==(const Cut&, const Cut&) = default;
 };
 
 /// The cuts of all layers, layer after layer.
@@ -70,6 +71,16 @@ struct CutTable {
   const double share = (z_mm - lower.z) / (upper.z - lower.z);
   return snap(Point2{lower.x + share * (upper.x - lower.x), lower.y + share * (upper.y - lower.y)});
 }
+
+/// Whether two layers have cuts of the same triangles, all of which are upright: lean by no more
+/// than `lean_mm` from their lowest point to their highest. Then their lines are the same within
+/// about that, cut into pieces at other places: where two upright triangles meet at an edge that is
+/// not upright, they lie in one plane.
+///
+/// Both layers' cuts must be in the order of one method.
+/// Cost linear in the cuts, up to the first that differs.
+[[nodiscard]] bool run_straight_up(std::span<const Cut> lower, std::span<const Cut> upper,
+                                   const Mesh& mesh, double lean_mm);
 
 /// Cuts all triangles by all planes. The order of cuts within a layer depends on the method.
 /// Throws Error{kBadInput} naming the model where there are more cuts than memory should be spent

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <numeric>
 #include <span>
 #include <utility>
 
@@ -201,33 +202,62 @@ SliceReport summarise(const std::vector<Layer>& layers, const std::vector<Closin
   return report;
 }
 
-/// The closed contours of one layer, and what was closed for them.
-std::vector<Ring> contours_of(std::span<const slicing::Cut> cuts, const Mesh& mesh, double z_mm,
-                              const SliceOptions& options, Closing& closing) {
+/// The closed contours of one layer.
+struct ClosedContours {
+  std::vector<Ring> rings;
+  Closing closing;        ///< what was closed for them
+  bool at_edges = false;  ///< as of Contours
+};
+
+ClosedContours contours_of(std::span<const slicing::Cut> cuts, const Mesh& mesh, double z_mm,
+                           const SliceOptions& options) {
   Contours contours = slicing::chain_cuts(cuts, mesh, z_mm);
+  ClosedContours closed{{}, {}, contours.at_edges};
   if (!contours.open.empty())
-    closing = slicing::close_gaps(contours.open, options.crack_mm, contours.rings);
+    closed.closing = slicing::close_gaps(contours.open, options.crack_mm, contours.rings);
   if (options.straight_mm > 0) {
     // Slivers first: where the side beside one moves, it would become a notch.
     std::erase_if(contours.rings, [](const Ring& ring) { return slicing::is_sliver(ring); });
     for (Ring& ring : contours.rings) ring = straightened(ring, options.straight_mm);
   }
-  return std::move(contours.rings);
+  closed.rings = std::move(contours.rings);
+  return closed;
+}
+
+/// Of each layer the lowest one from which walls run straight up to it; itself if there is none.
+std::vector<std::size_t> lowest_straight_below(const CutTable& table, const Mesh& mesh,
+                                               const SliceOptions& options, std::size_t layers,
+                                               const ParallelFor& parallel_for) {
+  // Of what straightening may move a side by.
+  constexpr double kLeanShare = 0.01;
+  std::vector<std::size_t> lowest(layers);
+  std::iota(lowest.begin(), lowest.end(), std::size_t{0});
+  // Where it moves nothing, each layer has the points of its own cuts.
+  if (options.straight_mm <= 0) return lowest;
+  parallel_for(layers, [&](std::size_t i) {
+    if (i > 0 &&
+        run_straight_up(table.layer(i - 1), table.layer(i), mesh, kLeanShare * options.straight_mm))
+      lowest[i] = i - 1;
+  });
+  for (std::size_t& below : lowest) below = lowest[below];
+  return lowest;
 }
 
 /// Gives each layer its polygons; returns what was closed for them.
 std::vector<Closing> fill_layers(const CutTable& table, const Mesh& mesh,
                                  const SliceOptions& options, std::vector<Layer>& layers,
                                  const ParallelFor& parallel_for) {
-  std::vector<Closing> closings(layers.size());
-  std::vector<std::vector<Ring>> contours(layers.size());
+  std::vector<ClosedContours> contours(layers.size());
+  const auto make_contours = [&](std::size_t i) {
+    contours[i] = contours_of(table.layer(i), mesh, layers[i].z_mm, options);
+  };
   const auto make_polygons = [&](std::size_t i) {
     // Where facets gape by a crack they also overlap by as much; two sides that were straightened
     // may have moved apart by twice what one may.
-    const double sliver_mm =
-        std::max({slicing::kSliverMm, closings[i].widest_crack_mm, 2 * options.straight_mm});
+    const double sliver_mm = std::max(
+        {slicing::kSliverMm, contours[i].closing.widest_crack_mm, 2 * options.straight_mm});
     layers[i].polygons = slicing::without_slivers(
-        polygons_from_rings(std::move(contours[i]), FillRule::kNonZero), sliver_mm);
+        polygons_from_rings(std::move(contours[i].rings), FillRule::kNonZero), sliver_mm);
   };
   // Technical parts have the same contours on many layers, one above the other. There the lowest is
   // done for all; but contours are kept for that only where it is likely, as most layers' would be
@@ -235,25 +265,41 @@ std::vector<Closing> fill_layers(const CutTable& table, const Mesh& mesh,
   const auto resembles_next = [&](std::size_t i) {
     return i + 1 < contours.size() && table.layer(i).size() == table.layer(i + 1).size();
   };
+  std::vector<std::size_t> first =
+      lowest_straight_below(table, mesh, options, contours.size(), parallel_for);
   parallel_for(contours.size(), [&](std::size_t i) {
-    contours[i] = contours_of(table.layer(i), mesh, layers[i].z_mm, options, closings[i]);
+    if (first[i] != i) return;
+    make_contours(i);
     if (!resembles_next(i) && (i == 0 || !resembles_next(i - 1))) make_polygons(i);
   });
-  std::vector<std::size_t> first(contours.size()), kept, equal;
+  // A gap in a wall may be wider higher up.
+  parallel_for(contours.size(), [&](std::size_t i) {
+    if (first[i] == i || contours[first[i]].at_edges) return;
+    make_contours(i);
+    first[i] = i;
+  });
+  std::vector<std::size_t> kept, equal;
   for (std::size_t i = 0; i < first.size(); ++i) {
-    const bool is_equal = i > 0 && resembles_next(i - 1) && contours[i] == contours[i - 1] &&
-                          closings[i].widest_crack_mm == closings[i - 1].widest_crack_mm;
-    first[i] = is_equal ? first[i - 1] : i;
-    if (is_equal)
+    if (first[i] == i && i > 0 && resembles_next(i - 1)) {
+      const ClosedContours &here = contours[i], &below = contours[first[i - 1]];
+      if (here.rings == below.rings &&
+          here.closing.widest_crack_mm == below.closing.widest_crack_mm)
+        first[i] = first[i - 1];
+    }
+    first[i] = first[first[i]];
+    if (first[i] != i)
       equal.push_back(i);
-    else if (!contours[i].empty())
+    else if (!contours[i].rings.empty())
       kept.push_back(i);
   }
-  for (const std::size_t i : equal) contours[i] = std::vector<Ring>{};  // memory for the copies
+  for (const std::size_t i : equal)
+    contours[i].rings = std::vector<Ring>{};  // memory for the copies
   parallel_for(kept.size(), [&](std::size_t k) { make_polygons(kept[k]); });
   parallel_for(equal.size(), [&](std::size_t k) {
     layers[equal[k]].polygons = layers[first[equal[k]]].polygons;
   });
+  std::vector<Closing> closings;
+  for (const ClosedContours& made : contours) closings.push_back(made.closing);
   return closings;
 }
 
