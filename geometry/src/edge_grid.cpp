@@ -14,6 +14,7 @@ namespace {
 // Crossings computed in floating point are off by less than this; nearer than this to an edge is on
 // it.
 constexpr double kOnEdgeMm = 4 / kGridUnitsPerMm;
+constexpr double kFirstReach = 0.25;  // cells
 
 // Both coordinates at once, in a vector of the compiler's own: std::min, std::max and std::clamp
 // become branches, which nobody can foresee here.
@@ -46,7 +47,7 @@ EdgeGrid::EdgeGrid(const Polygons& polygons) {
   const auto add_ring = [&](const Ring& ring) {
     for (std::size_t i = 0; i < ring.size(); ++i) {
       const Point2 a = ring[i], b = ring[i + 1 == ring.size() ? 0 : i + 1];
-      if (a != b) edges_.push_back({a, b});
+      if (a != b) edges_.push_back({a, b, 1 / squared_distance(a, b)});
     }
   };
   for (const Polygon& polygon : polygons) {
@@ -270,37 +271,34 @@ bool EdgeGrid::covers(Point2 a, Point2 b) const {
 
 std::optional<double> EdgeGrid::distance_to_edge_mm(Point2 p, double limit_mm) const {
   if (edges_.empty()) return std::nullopt;
-  Point2 foot;
+  const Edge* nearest = nullptr;
   double nearest_squared = std::numeric_limits<double>::infinity();
-  // No line that is farther away than an edge or the limit is looked at; that takes no division.
-  constexpr double kRounding = 1 + 1e-9;
-  double farthest_squared = kRounding * limit_mm * limit_mm;
   // Widening boxes around p: most questions end in the first.
-  for (double reach = std::min(limit_mm, cell_mm_);; reach = std::min(limit_mm, 2 * reach)) {
+  for (double reach = std::min(limit_mm, kFirstReach * cell_mm_);;
+       reach = std::min(limit_mm, 2 * reach)) {
     // An edge in several cells is looked at more than once, which costs less than to sort them.
-    const std::int64_t first_column = column(p.x - reach), last_column = column(p.x + reach);
-    const std::int64_t last_row = row(p.y + reach);
-    for (std::int64_t r = row(p.y - reach); r <= last_row; ++r) {
+    const Cells cells = cells_of(p.x - reach, p.y - reach, p.x + reach, p.y + reach);
+    for (std::int64_t r = cells.first_row; r <= cells.last_row; ++r) {
       // The cells of a row follow each other.
-      const auto first = static_cast<std::size_t>(r * column_count_ + first_column);
-      const auto end = static_cast<std::size_t>(r * column_count_ + last_column + 1);
+      const auto first = static_cast<std::size_t>(r * column_count_ + cells.first_column);
+      const auto end = static_cast<std::size_t>(r * column_count_ + cells.last_column + 1);
       for (std::uint32_t i = cells_.begin[first]; i < cells_.begin[end]; ++i) {
         const Edge& edge = edges_[cells_.items[i]];
-        const Point2 way = edge.b - edge.a;
-        const double across = cross(way, p - edge.a);
-        if (across * across > farthest_squared * dot(way, way)) continue;
-        const Point2 candidate = nearest_on_segment(p, edge.a, edge.b);
-        const double squared = squared_distance(p, candidate);
+        const Point2 way = edge.b - edge.a, at = p - edge.a;
+        double share = dot(at, way) * edge.per_squared_length;
+        share = share > 0 ? share : 0;  // std::clamp becomes branches
+        share = share < 1 ? share : 1;
+        const Point2 off = at - share * way;
+        const double squared = dot(off, off);
         if (squared >= nearest_squared) continue;
         nearest_squared = squared;
-        farthest_squared = std::min(farthest_squared, kRounding * squared);
-        foot = candidate;
+        nearest = &edge;
       }
     }
     if (nearest_squared <= reach * reach || reach >= limit_mm) break;
   }
-  if (!(nearest_squared < std::numeric_limits<double>::infinity())) return std::nullopt;
-  const double nearest_mm = distance(p, foot);
+  if (nearest == nullptr) return std::nullopt;
+  const double nearest_mm = distance(p, nearest_on_segment(p, nearest->a, nearest->b));
   return nearest_mm <= limit_mm ? std::optional(nearest_mm) : std::nullopt;
 }
 

@@ -41,6 +41,7 @@ class EdgeGrid {
  private:
   struct Edge {
     Point2 a, b;
+    double per_squared_length;  // 1 / mm2
   };
   /// Index lists of many buckets in one array: bucket i holds items[begin[i] .. begin[i + 1]).
   struct Buckets {
