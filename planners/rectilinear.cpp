@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -179,12 +180,14 @@ class Rectilinear final : public Planner {
   }
 
   static std::vector<std::vector<Point2>> traces(const Hatch& hatch,
+                                                 std::span<const Stretch> stretches,
                                                  const std::vector<Joint>& joints,
                                                  const Polygon& region,
                                                  const PlanContext& context) {
     const double mean_width_mm = 2 * area_mm2(region) / perimeter_mm(region);
     const bool is_narrow = mean_width_mm < kNarrowLines * context.line_width_mm;
-    return bare_boundary(hatch, joints, (is_narrow ? kReachInNarrow : kReach) * context.spacing_mm,
+    return bare_boundary(hatch, stretches, joints,
+                         (is_narrow ? kReachInNarrow : kReach) * context.spacing_mm,
                          (is_narrow ? 0.5 : 1) * context.line_width_mm, context);
   }
 
@@ -203,23 +206,30 @@ class Rectilinear final : public Planner {
     rule.min_length_mm = rules.min_length_mm;
     if (params.ends == Ends::kAlong) rule.end_gap_mm = rules.end_gap_mm;
     const Hatch hatch(region, rule);
-    const std::vector<Joint> joints = joints_of(hatch, region, rules, distance_mm, context);
+    const bool is_inset = params.ends == Ends::kInset;
+    const bool traces_wall = params.trace && is_inset && context.density >= 1;
+    const std::vector<Stretch> stretches =
+        traces_wall || (is_inset && params.link == Link::kBoundary) ? boundary_stretches(hatch)
+                                                                    : std::vector<Stretch>{};
+    const std::vector<Joint> joints =
+        joints_of(hatch, stretches, region, rules, distance_mm, context);
     const auto lay = [&](std::vector<std::vector<Point2>> polylines) {
       for (std::vector<Point2>& points : polylines)
         strokes.push_back({std::move(points), context.line_width_mm});
     };
     lay(joined_lines(hatch, joints));
-    if (params.trace && params.ends == Ends::kInset && context.density >= 1)
-      lay(traces(hatch, joints, region, context));
+    if (traces_wall) lay(traces(hatch, stretches, joints, region, context));
   }
 
-  static std::vector<Joint> joints_of(const Hatch& hatch, const Polygon& region, const Rules& rules,
-                                      double distance_mm, const PlanContext& context) {
+  static std::vector<Joint> joints_of(const Hatch& hatch, std::span<const Stretch> stretches,
+                                      const Polygon& region, const Rules& rules, double distance_mm,
+                                      const PlanContext& context) {
     const RectilinearParams& params = rules.params;
     if (params.link == Link::kNone) return {};
     if (params.link == Link::kFlows || params.ends == Ends::kAlong)
       return join_flows(hatch, rules.joints_may_leave ? nullptr : &region);
-    std::vector<Joint> joints = join_along_boundary(hatch, params.max_link * distance_mm);
+    std::vector<Joint> joints =
+        join_along_boundary(hatch, stretches, params.max_link * distance_mm);
     return context.density < 1 ? affordable(std::move(joints), hatch, region, distance_mm, context)
                                : joints;
   }

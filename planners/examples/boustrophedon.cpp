@@ -218,7 +218,7 @@ class Boustrophedon final : public Planner {
     if (!dense) return frame.from_frame({std::move(strokes)});
     // What no line comes near, and what is too narrow for one.
     for (const Field& field : fields)
-      lay(bare_boundary(field.hatch, field.joints, kReach * context.spacing_mm,
+      lay(bare_boundary(field.hatch, field.stretches, field.joints, kReach * context.spacing_mm,
                         context.line_width_mm, context));
     for (Stroke& stroke : gap_lines(frame.polygons(), {regions}, 1, context.line_width_mm, context))
       strokes.push_back(std::move(stroke));

@@ -2,6 +2,7 @@
 #include <cstddef>
 #include <numeric>
 #include <optional>
+#include <span>
 #include <tuple>
 #include <utility>
 
@@ -41,7 +42,7 @@ class Strokes {
 
 /// A stretch that may become a joint.
 struct Candidate {
-  Stretch stretch;
+  const Stretch* stretch;
   double length_mm;
   std::uint32_t lower_line;
 };
@@ -74,15 +75,16 @@ std::vector<Joint> join_flows(const Hatch& hatch, const Polygon* region) {
   return joints;
 }
 
-std::vector<Joint> join_along_boundary(const Hatch& hatch, double max_mm) {
+std::vector<Joint> join_along_boundary(const Hatch& hatch, std::span<const Stretch> stretches,
+                                       double max_mm) {
   std::vector<Candidate> candidates;
-  for (Stretch& stretch : boundary_stretches(hatch)) {
+  for (const Stretch& stretch : stretches) {
     if (stretch.from_end == kNoEnd || stretch.from_end / 2 == stretch.to_end / 2) continue;
     const double along_mm = length_mm(stretch.path);
     if (along_mm > max_mm) continue;
     const std::uint32_t line =
         std::min(hatch.line_of_end(stretch.from_end), hatch.line_of_end(stretch.to_end));
-    candidates.push_back({std::move(stretch), along_mm, line});
+    candidates.push_back({&stretch, along_mm, line});
   }
   std::stable_sort(
       candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
@@ -92,12 +94,12 @@ std::vector<Joint> join_along_boundary(const Hatch& hatch, double max_mm) {
   std::vector<Joint> joints;
   std::vector<bool> taken(hatch.ends().size(), false);
   Strokes strokes(hatch.pieces());
-  for (Candidate& candidate : candidates) {
-    Stretch& stretch = candidate.stretch;
+  for (const Candidate& candidate : candidates) {
+    const Stretch& stretch = *candidate.stretch;
     if (taken[stretch.from_end] || taken[stretch.to_end]) continue;
     if (!strokes.join(stretch.from_end / 2, stretch.to_end / 2)) continue;
     taken[stretch.from_end] = taken[stretch.to_end] = true;
-    joints.push_back({stretch.from_end, stretch.to_end, std::move(stretch.path)});
+    joints.push_back({stretch.from_end, stretch.to_end, stretch.path});
   }
   return joints;
 }

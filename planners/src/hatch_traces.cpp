@@ -2,6 +2,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <set>
+#include <span>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -120,13 +121,14 @@ class Tracer {
 
 }  // namespace
 
-std::vector<std::vector<Point2>> bare_boundary(const Hatch& hatch, const std::vector<Joint>& joints,
-                                               double reach_mm, double min_length_mm,
-                                               const PlanContext& context) {
+std::vector<std::vector<Point2>> bare_boundary(const Hatch& hatch,
+                                               std::span<const Stretch> stretches,
+                                               const std::vector<Joint>& joints, double reach_mm,
+                                               double min_length_mm, const PlanContext& context) {
   std::set<std::pair<std::size_t, std::size_t>> used;
   for (const Joint& joint : joints) used.emplace(joint.from_end, joint.to_end);
   Tracer tracer(hatch, reach_mm, min_length_mm);
-  for (const Stretch& stretch : boundary_stretches(hatch)) {
+  for (const Stretch& stretch : stretches) {
     stop_if_asked(context);
     if (!used.contains({stretch.from_end, stretch.to_end})) tracer.trace(stretch.path);
   }

@@ -134,11 +134,13 @@ void expect_sound(const Hatch& hatch, const std::vector<Joint>& joints) {
 
 TEST(HatchTest, JointsAlongTheBoundaryAreSound) {
   for (const Hatch& hatch : trial_hatches()) {
-    const std::vector<Joint> joints = join_along_boundary(hatch, 2);
+    const std::vector<Stretch> stretches = boundary_stretches(hatch);
+    const std::vector<Joint> joints = join_along_boundary(hatch, stretches, 2);
     expect_sound(hatch, joints);
     for (const Joint& joint : joints) EXPECT_LE(length_mm(joint.path), 2);
     // Pieces that meet in a vertex need no way at all.
-    for (const Joint& joint : join_along_boundary(hatch, 0)) EXPECT_EQ(length_mm(joint.path), 0);
+    for (const Joint& joint : join_along_boundary(hatch, stretches, 0))
+      EXPECT_EQ(length_mm(joint.path), 0);
   }
 }
 
@@ -175,7 +177,7 @@ TEST(HatchTest, AStretchThatNoLineComesNearIsBare) {
   const Polygon notched{{{0, 0}, {10, 0}, {10, 3}, {7, 3}, {7, 1.875}, {3, 1.875}, {3, 3}, {0, 3}},
                         {}};
   const Hatch hatch(notched, level_lines(1, 1.5, 2));
-  const auto bare = bare_boundary(hatch, {}, 0.4, 0.5, PlanContext{});
+  const auto bare = bare_boundary(hatch, boundary_stretches(hatch), {}, 0.4, 0.5, PlanContext{});
   ASSERT_EQ(bare.size(), 4U);
   for (const auto& polyline : bare) {
     EXPECT_GE(length_mm(polyline), 0.5);
@@ -190,7 +192,7 @@ TEST(HatchTest, AStretchThatNoLineComesNearIsBare) {
 
 TEST(HatchTest, BareStretchesAreFarFromPiecesAndNotTracedTwice) {
   for (const Hatch& hatch : trial_hatches()) {
-    const auto bare = bare_boundary(hatch, {}, 0.25, 0.3, PlanContext{});
+    const auto bare = bare_boundary(hatch, boundary_stretches(hatch), {}, 0.25, 0.3, PlanContext{});
     double traced = 0, perimeter = 0;
     for (const Ring& ring : hatch.rings()) perimeter += perimeter_mm(ring);
     for (const auto& polyline : bare) {
@@ -201,7 +203,8 @@ TEST(HatchTest, BareStretchesAreFarFromPiecesAndNotTracedTwice) {
   }
   // A slot 0.2 wide between two lines: one of its sides, not both.
   const Polygon slot{test::rectangle(0, 1.4, 10, 1.6), {}};
-  const auto once = bare_boundary(Hatch(slot, level_lines(0, 1, 4)), {}, 0.3, 0.3, PlanContext{});
+  const Hatch beside(slot, level_lines(0, 1, 4));
+  const auto once = bare_boundary(beside, boundary_stretches(beside), {}, 0.3, 0.3, PlanContext{});
   ASSERT_EQ(once.size(), 1U);
   EXPECT_NEAR(length_mm(once[0]), 10.2, 0.7);
 }

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "routebench/geometry/types.hpp"
@@ -103,18 +104,22 @@ struct Joint {
 [[nodiscard]] std::vector<Joint> join_flows(const Hatch& hatch, const Polygon* region);
 
 /// Joins pieces whose ends are neighbours on the boundary along it, if that is at most max_mm long.
-/// No stretch of the boundary is used twice, and no stroke is closed. Lines are joined from the
-/// lowest upwards, which makes a zigzag where there is a choice.
-[[nodiscard]] std::vector<Joint> join_along_boundary(const Hatch& hatch, double max_mm);
+/// `stretches` are boundary_stretches(hatch). None of them is used twice, and no stroke is closed.
+/// Lines are joined from the lowest upwards, which makes a zigzag where there is a choice.
+[[nodiscard]] std::vector<Joint> join_along_boundary(const Hatch& hatch,
+                                                     std::span<const Stretch> stretches,
+                                                     double max_mm);
 
 /// The polylines that pieces and joints make, each joint being used once.
 [[nodiscard]] std::vector<std::vector<Point2>> joined_lines(const Hatch& hatch,
                                                             const std::vector<Joint>& joints);
 
-/// Stretches of the boundary from which every piece is farther than reach_mm, as polylines; no two
-/// of them nearer than that to each other, none shorter than min_length_mm. What joints use is left
-/// out. Cost   near linear in the boundary's length over reach_mm.
+/// What of the boundary every piece is farther from than reach_mm, as polylines; no two of them
+/// nearer than that to each other, none shorter than min_length_mm. `stretches` are
+/// boundary_stretches(hatch); those that joints use are left out.
+/// Cost   near linear in the boundary's length over reach_mm.
 [[nodiscard]] std::vector<std::vector<Point2>> bare_boundary(const Hatch& hatch,
+                                                             std::span<const Stretch> stretches,
                                                              const std::vector<Joint>& joints,
                                                              double reach_mm, double min_length_mm,
                                                              const PlanContext& context);
