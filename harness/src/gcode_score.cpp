@@ -202,7 +202,7 @@ PlacedPrint place_print(const GcodePrint& print, const PreparedModel& model,
     const GcodeLayer& layer = print.layers[*pair];
     placed.layers[i].route = shifted(layer.route, placed.offset_mm);
     placed.layers[i].kinds =
-        kinds_of(placed.layers[i].route, layer.kinds, model.demands[chosen[i]]);
+        kinds_of(placed.layers[i].route, layer.kinds, *model.demands[chosen[i]]);
   });
   return placed;
 }
@@ -247,7 +247,7 @@ GcodeScore score_gcode(const Judge& judge, const GcodePrint& print,
                                   .solid = {}});
     printed.push_back({layer.route, {}});
   }
-  bare.demands.resize(printed.size());
+  bare.demands.resize(printed.size(), std::make_shared<const Demand>());
   GcodeScore score;
   score.cell = judge_layers(judge, bare, all_layers(bare.sliced), printed, parallel_for);
   score.cell.totals.at(metric_index("stated_time_s")) = print.stated_time_s;

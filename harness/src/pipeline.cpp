@@ -152,8 +152,7 @@ SlicedModel slice_model(const std::string& spec, const Task& task, const SliceMo
   return sliced;
 }
 
-std::vector<Demand> demands_of(const SlicedModel& sliced, const Task& task,
-                               const ParallelFor& parallel_for) {
+Demands demands_of(const SlicedModel& sliced, const Task& task, const ParallelFor& parallel_for) {
   const std::vector<Layer>& layers = sliced.layers;
   const bool by_difference = task.skin_rule == SkinRule::kDifference && task.density < 1;
   const SkinFinder skins(layers, by_difference ? task.skin_layers : 0, parallel_for);
@@ -164,13 +163,13 @@ std::vector<Demand> demands_of(const SlicedModel& sliced, const Task& task,
   parallel_for(layers.size(), [&](std::size_t i) {
     if (first[i] == i) insides[i] = inside_of(layers[i], task);
   });
-  std::vector<Demand> demands(layers.size());
+  Demands demands(layers.size());
   parallel_for(layers.size(), [&](std::size_t i) {
     if (original[i] != i) return;
     const bool is_dense = !layers[i].solid.empty();
-    demands[i] = demand_of(layers[i], task, insides[first[i]], [&](const Polygons& inside) {
-      return is_dense ? inside : skins.skins_in(inside, i);
-    });
+    demands[i] = std::make_shared<const Demand>(demand_of(
+        layers[i], task, insides[first[i]],
+        [&](const Polygons& inside) { return is_dense ? inside : skins.skins_in(inside, i); }));
   });
   for (std::size_t i = 0; i < layers.size(); ++i)
     if (original[i] != i) demands[i] = demands[original[i]];
@@ -205,12 +204,13 @@ std::vector<std::size_t> first_of_equal_routes(const Contender& contender,
     original[i] = i;
     if (period == 0) continue;
     const Layer& layer = layers[chosen[i]];
-    const Demand& demand = model.demands[chosen[i]];
+    const auto& demand = model.demands[chosen[i]];
     std::vector<std::size_t>& places = known[{first[chosen[i]], layer.index % period}];
     const auto equal = std::find_if(places.begin(), places.end(), [&](std::size_t place) {
-      const Demand& other = model.demands[chosen[place]];
-      return layers[chosen[place]].height_mm == layer.height_mm && other.dense == demand.dense &&
-             other.sparse == demand.sparse;
+      const auto& other = model.demands[chosen[place]];
+      return layers[chosen[place]].height_mm == layer.height_mm &&
+             (other == demand ||
+              (other->dense == demand->dense && other->sparse == demand->sparse));
     });
     if (equal != places.end())
       original[i] = *equal;
@@ -243,9 +243,9 @@ std::vector<PlannedLayer> plan_layers(const Contender& contender, const Prepared
   std::vector<PlannedLayer> planned(chosen.size());
   parallel_for(chosen.size(), [&](std::size_t place) {
     const std::size_t i = order[place];
-    planned[i] =
-        contender.plan(layers[chosen[i]], model.demands[chosen[i]], task, model.sliced.origin, seed,
-                       stop, has_equals(chosen[i]) ? &memo : nullptr, repeats == Repeats::kPlan);
+    planned[i] = contender.plan(layers[chosen[i]], *model.demands[chosen[i]], task,
+                                model.sliced.origin, seed, stop,
+                                has_equals(chosen[i]) ? &memo : nullptr, repeats == Repeats::kPlan);
   });
   return planned;
 }
@@ -264,7 +264,7 @@ JudgedCell judge_layers(const Judge& judge, const PreparedModel& model,
   cases.reserve(planned.size());
   std::optional<Point2> nozzle;
   for (std::size_t i = 0; i < planned.size(); ++i) {
-    cases.push_back({&model.demands[chosen[i]], &planned[i].route, nozzle});
+    cases.push_back({model.demands[chosen[i]].get(), &planned[i].route, nozzle});
     if (const auto end = end_of(planned[i].route)) nozzle = end;
   }
   const std::vector<std::size_t> first = judging::first_alike(cases);

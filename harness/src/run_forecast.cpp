@@ -29,11 +29,11 @@ std::size_t vertices_of(const Polygons& polygons) {
 
 double work_of(const PreparedModel& model, const Task& task) {
   double mm = 0;
-  for (const Demand& demand : model.demands) {
-    const double walls_mm2 = area_mm2(demand.outline) - area_mm2(demand.inside);
-    const double lines_mm2 = area_mm2(demand.dense) + task.density * area_mm2(demand.sparse);
+  for (const auto& demand : model.demands) {
+    const double walls_mm2 = area_mm2(demand->outline) - area_mm2(demand->inside);
+    const double lines_mm2 = area_mm2(demand->dense) + task.density * area_mm2(demand->sparse);
     mm += (walls_mm2 + lines_mm2) / task.spacing_mm();
-    mm += kMmPerVertex * static_cast<double>(vertices_of(demand.outline)) + kMmPerLayer;
+    mm += kMmPerVertex * static_cast<double>(vertices_of(demand->outline)) + kMmPerLayer;
   }
   return mm;
 }

@@ -96,11 +96,11 @@ TEST(DemandsOf, EqualLayersGetWhatEachWouldGetAlone) {
     Task task;
     task.density = density;
     const SlicedModel model = tower();
-    const std::vector<Demand> demands = demands_of(model, task, serial_for);
+    const Demands demands = demands_of(model, task, serial_for);
     const SkinFinder skins(model.layers, task.skin_layers, serial_for);
     for (std::size_t i = 0; i < model.layers.size(); ++i) {
       SCOPED_TRACE(i);
-      EXPECT_EQ(demands[i],
+      EXPECT_EQ(*demands[i],
                 demand_of(model.layers[i], task, inside_of(model.layers[i], task),
                           [&](const Polygons& inside) { return skins.skins_in(inside, i); }));
     }
@@ -203,7 +203,9 @@ TEST(JudgeLayers, EqualLayersGetWhatEachWouldGetAlone) {
   // Layers that are equal but for one thing each: a point, a width, a skin, how they are marked.
   planned[11].route.strokes.back().points.back().x += 0.5;
   planned[13].route.strokes.back().width_mm *= 2;
-  std::swap(model.demands[15].dense, model.demands[15].sparse);
+  Demand other = *model.demands[15];
+  std::swap(other.dense, other.sparse);
+  model.demands[15] = std::make_shared<const Demand>(other);
   model.sliced.layers[16].repaired = true;
 
   const Judge judge(task, {});
@@ -213,11 +215,11 @@ TEST(JudgeLayers, EqualLayersGetWhatEachWouldGetAlone) {
   for (const std::size_t i : all) {
     SCOPED_TRACE(i);
     LayerScore alone =
-        judge.score(model.sliced.layers[i], model.demands[i], planned[i].route, nozzle);
+        judge.score(model.sliced.layers[i], *model.demands[i], planned[i].route, nozzle);
     alone.scores[metric_index("plan_wall_ns")] = static_cast<double>(planned[i].plan_wall_ns);
     alone.scores[metric_index("plan_cpu_ns")] = static_cast<double>(planned[i].plan_cpu_ns);
     EXPECT_EQ(cell.layers[i], alone);
-    cases.push_back({&model.demands[i], &planned[i].route, nozzle});
+    cases.push_back({model.demands[i].get(), &planned[i].route, nozzle});
     nozzle = alone.end;
   }
   // Lines turn from layer to layer.

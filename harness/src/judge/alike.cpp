@@ -8,7 +8,8 @@ namespace routebench::judging {
 namespace {
 
 bool are_alike(const LayerCase& a, const LayerCase& b) {
-  return a.entered_from == b.entered_from && *a.route == *b.route && *a.demand == *b.demand;
+  return a.entered_from == b.entered_from && *a.route == *b.route &&
+         (a.demand == b.demand || *a.demand == *b.demand);
 }
 
 /// Equal for equal cases but for zeros of other signs, which are then judged one by one.

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <stop_token>
@@ -103,16 +104,19 @@ struct SlicedModel {
                                       const SliceModelOptions& options,
                                       const ParallelFor& parallel_for);
 
-/// A sliced model with what a task demands of each of its layers.
+/// What a task demands of each layer; layers of which it demands the same may share it.
+using Demands = std::vector<std::shared_ptr<const Demand>>;
+
+/// A sliced model with what a task demands of it.
 struct PreparedModel {
   SlicedModel sliced;
-  std::vector<Demand> demands;  ///< one a layer
+  Demands demands;
 };
 
 /// What a task demands of each layer of a model, which may have been sliced for another task that
 /// asks for the same layers. Skins are found in what the walls leave.
-[[nodiscard]] std::vector<Demand> demands_of(const SlicedModel& sliced, const Task& task,
-                                             const ParallelFor& parallel_for);
+[[nodiscard]] Demands demands_of(const SlicedModel& sliced, const Task& task,
+                                 const ParallelFor& parallel_for);
 
 /// Slices a model and finds its demands. Layer::solid is set only where a whole layer is dense.
 [[nodiscard]] PreparedModel prepare_model(const std::string& spec, const Task& task,
