@@ -21,8 +21,8 @@ void keep_freed_memory(std::chrono::nanoseconds dear_page = std::chrono::microse
 /// them in the program's. For new threads, before they allocate anything.
 void prepare_heap_of_thread() noexcept;
 
-/// Takes what has done its work and holds it until the process ends, when the system has all memory
-/// back at once: to give it back piece by piece takes longer.
+/// Takes what has done its work, be it memory or threads that sleep, and holds it until the process
+/// ends, when the system has all of it back at once: to give it back piece by piece takes longer.
 template <typename T>
 void keep_until_exit(T value) {
   static std::forward_list<T>& kept = *new std::forward_list<T>;

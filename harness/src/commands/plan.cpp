@@ -130,6 +130,7 @@ class Plan {
     }
     keep_until_exit(std::move(model_));
     keep_until_exit(std::move(planned_));
+    keep_until_exit(std::move(parallel_for_));
     return !cell_ || cell_->verdict.outcome == Outcome::kValid ? 0 : kExitNotValid;
   }
 
