@@ -284,6 +284,27 @@ TEST(SliceMesh, EveryMethodGivesTheSameLayers) {
     }
 }
 
+TEST(SliceMesh, UprightWallsAreTheSameByEveryMethodAndInAnyOrder) {
+  std::vector<Mesh> meshes = nasty_meshes();
+  meshes.push_back(load_model("shape:gear").mesh);
+  meshes.push_back(box({0, 0, 0}, {10, 10, 10}));
+  for (Point3& p : meshes.back().vertices)
+    if (p.z > 0) p.x += 1e-4;  // leans by hardly less than makes a difference
+  meshes.push_back(box({0, 0, 0}, {10, 10, 10}));
+  for (Point3& p : meshes.back().vertices)
+    if (p.z > 0 && p.x > 0) p.x += 1;  // of the four walls one leans
+  for (const Mesh& mesh : meshes) {
+    const auto layers_by = [&](const Mesh& of, SliceMethod method) {
+      return slice_mesh(of, {.method = method, .straight_mm = 0.0125}, "test").layers;
+    };
+    const std::vector<Layer> expected = layers_by(mesh, SliceMethod::kBucket);
+    EXPECT_EQ(layers_by(mesh, SliceMethod::kSweep), expected);
+    EXPECT_EQ(layers_by(mesh, SliceMethod::kNaive), expected);
+    for (const std::uint32_t seed : {1U, 2U})
+      EXPECT_EQ(layers_by(test::shuffled(mesh, seed), SliceMethod::kBucket), expected);
+  }
+}
+
 TEST(SliceMesh, TheLoopThatRunsItDoesNotMatter) {
   const ParallelFor backwards = [](std::size_t count,
                                    const std::function<void(std::size_t)>& body) {
