@@ -40,18 +40,25 @@ bool ring_less(const Ring& a, const Ring& b) {
 /// A point that a ring visits twice may be its smallest: then what follows decides where the ring
 /// begins.
 void begin_at_smallest(Ring& ring) {
-  const Point2 smallest = *std::min_element(ring.begin(), ring.end(), point_less);
   const std::size_t n = ring.size();
-  std::size_t best = n;
-  const auto earlier = [&](std::size_t i, std::size_t j) {
-    for (std::size_t k = 1; k < n; ++k) {
-      const Point2 a = ring[(i + k) % n], b = ring[(j + k) % n];
-      if (a != b) return point_less(a, b);
-    }
-    return false;
-  };
-  for (std::size_t i = 0; i < n; ++i)
-    if (ring[i] == smallest && (best == n || earlier(i, best))) best = i;
+  std::size_t best = 0;
+  bool is_alone = true;
+  for (std::size_t i = 1; i < n; ++i) {
+    if (point_less(ring[best], ring[i])) continue;
+    is_alone = ring[i] != ring[best];
+    if (is_alone) best = i;
+  }
+  if (!is_alone) {
+    const auto earlier = [&](std::size_t i, std::size_t j) {
+      for (std::size_t k = 1; k < n; ++k) {
+        const Point2 a = ring[(i + k) % n], b = ring[(j + k) % n];
+        if (a != b) return point_less(a, b);
+      }
+      return false;
+    };
+    for (std::size_t i = best + 1; i < n; ++i)
+      if (ring[i] == ring[best] && earlier(i, best)) best = i;
+  }
   std::rotate(ring.begin(), ring.begin() + static_cast<std::ptrdiff_t>(best), ring.end());
 }
 
@@ -103,9 +110,6 @@ Polygons clip(cl::ClipType operation, const Polygons& a, const Polygons& b) {
 namespace overlay {
 namespace {
 
-/// Ordered as point_less orders points.
-std::int64_t order_of(GridPoint p) { return std::int64_t{p.x} * (std::int64_t{1} << 32) + p.y; }
-
 Ring from_grid_ring(const GridRing& points) {
   std::size_t first = 0;
   std::int64_t least = order_of(points[0]);
@@ -117,14 +121,11 @@ Ring from_grid_ring(const GridRing& points) {
     least = order;
     first = i;
   }
-  Ring ring;
-  ring.reserve(points.size());
-  const auto add = [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      ring.push_back({from_grid(points[i].x), from_grid(points[i].y)});
-  };
-  add(first, points.size());
-  add(0, first);
+  Ring ring(points.size());
+  const auto in_mm = [](GridPoint p) { return Point2{from_grid(p.x), from_grid(p.y)}; };
+  const auto smallest = points.begin() + static_cast<std::ptrdiff_t>(first);
+  const auto rest = std::transform(smallest, points.end(), ring.begin(), in_mm);
+  std::transform(points.begin(), smallest, rest, in_mm);
   if (!is_alone) begin_at_smallest(ring);
   return ring;
 }

@@ -70,7 +70,7 @@ SlicedModel slice_mesh_model(const std::string& spec, const Task& task,
   Slices slices = slice_mesh(model.mesh, slicing, spec, parallel_for);
   SlicedModel sliced;
   sliced.mesh = model.report;
-  sliced.mesh_hash = model.content_hash;
+  if (options.hash_mesh) sliced.mesh_hash = content_hash(model.mesh, parallel_for);
   sliced.warnings = std::move(model.warnings);
   sliced.warnings.insert(sliced.warnings.end(), slices.report.warnings.begin(),
                          slices.report.warnings.end());

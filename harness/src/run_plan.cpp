@@ -294,7 +294,7 @@ RunPlan make_plan(const ExperimentConfig& config, const PlannerSet& planners,
   RunProgress progress(log, "slicing model", config.models.size(),
                        static_cast<double>(config.models.size()));
   for (std::size_t m = 0; m < config.models.size(); ++m) {
-    add_model(config, m, {.repair = options.repair}, parallel_for, plan, models);
+    add_model(config, m, {.repair = options.repair, .hash_mesh = true}, parallel_for, plan, models);
     progress.step(1, {});
   }
   add_cells(config, options, models, plan);

@@ -73,7 +73,7 @@ TEST(Stl, NegativeZeroIsZero) {
   const ModelFile file("part.stl", bytes);
   const Model model = load_model(file.path());
   EXPECT_EQ(model.report.vertices, 8U);
-  EXPECT_EQ(model.content_hash, load_model("shape:box").content_hash);
+  EXPECT_EQ(content_hash(model.mesh), content_hash(load_model("shape:box").mesh));
 }
 
 TEST(Stl, EveryTruncationOfABinaryFileIsRefusedAndRepairReadsTheWholeFacets) {
@@ -186,7 +186,7 @@ TEST(Stl, NormalsAndAttributesAreNotLookedAt) {
     bytes = patched(bytes, 84 + 50 * facet + 48, std::uint16_t{0xFFFF});
   }
   const ModelFile file("part.stl", bytes);
-  EXPECT_EQ(load_model(file.path()).content_hash, load_model("shape:box").content_hash);
+  EXPECT_EQ(content_hash(load_model(file.path()).mesh), content_hash(load_model("shape:box").mesh));
 }
 
 TEST(Stl, AsciiTakesWhatWritersMakeOfIt) {
@@ -218,7 +218,8 @@ TEST(Stl, AsciiTakesWhatWritersMakeOfIt) {
        }) {
     file.rewrite(text);
     const Model model = load_model(file.path());
-    EXPECT_EQ(model.content_hash, load_model("shape:box").content_hash) << text.substr(0, 300);
+    EXPECT_EQ(content_hash(model.mesh), content_hash(load_model("shape:box").mesh))
+        << text.substr(0, 300);
   }
 }
 
@@ -288,7 +289,7 @@ TEST(Stl, WritingAndReadingIsLossless) {
   write_stl(first.path(), model.mesh);
   const Model once = load_model(first.path());
   const ModelFile second("part.stl", stl_bytes(once.mesh));
-  EXPECT_EQ(load_model(second.path()).content_hash, once.content_hash);
+  EXPECT_EQ(content_hash(load_model(second.path()).mesh), content_hash(once.mesh));
   EXPECT_NEAR(once.report.volume_mm3, model.report.volume_mm3, 1e-3);
   EXPECT_THROW(write_stl("/absent/folder/part.stl", model.mesh), Error);
 }

@@ -1,5 +1,10 @@
 /// What is executed again, and why; and what a run would do.
 
+#include <iomanip>
+#include <sstream>
+
+#include "database_content.hpp"
+#include "routebench/geometry/model.hpp"
 #include "runner_fixture.hpp"
 
 namespace routebench {
@@ -45,6 +50,15 @@ TEST_F(Redo, TellsWhatHasChanged) {
   dir_.write("small.wkt", squares_wkt(9));
   EXPECT_EQ(why(config(now), label), "the model has changed");
   EXPECT_EQ(why(config(now), "large.wkt · a"), "not executed");
+}
+
+TEST_F(Redo, AMeshIsStoredWithWhatItIsKnownBy) {
+  execute(config(hatch_contender("a"), "repetitions = 1", "", "\"shape:box?size=4\""));
+  std::ostringstream hash;
+  hash << std::hex << std::setw(16) << std::setfill('0')
+       << content_hash(load_model("shape:box?size=4").mesh);
+  EXPECT_EQ(test::rows_of(file(), "SELECT mesh_hash FROM model"),
+            std::vector<std::string>{hash.str()});
 }
 
 TEST_F(Redo, TellsWhatOfTheTaskAndThePrinterHasChanged) {

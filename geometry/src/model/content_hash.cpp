@@ -1,14 +1,14 @@
-#include "model/content_hash.hpp"
-
 #include <algorithm>
 #include <bit>
+#include <cstdint>
 #include <numeric>
 #include <vector>
 
 #include "large_vector.hpp"
 #include "model/blocks.hpp"
+#include "routebench/geometry/model.hpp"
 
-namespace routebench::models {
+namespace routebench {
 namespace {
 
 /// A bijection of 64-bit numbers in which every input bit moves about half of the output bits.
@@ -47,11 +47,13 @@ std::uint64_t triangle_hash(std::uint64_t a, std::uint64_t b, std::uint64_t c) n
 
 std::uint64_t content_hash(const Mesh& mesh, const ParallelFor& parallel_for) {
   LargeVector<std::uint64_t> points(mesh.vertices.size());
-  for_each_block(points.size(), parallel_for, [&](std::size_t, std::size_t begin, std::size_t end) {
-    for (std::size_t v = begin; v < end; ++v) points[v] = point_hash(mesh.vertices[v]);
-  });
+  models::for_each_block(points.size(), parallel_for,
+                         [&](std::size_t, std::size_t begin, std::size_t end) {
+                           for (std::size_t v = begin; v < end; ++v)
+                             points[v] = point_hash(mesh.vertices[v]);
+                         });
   // Sums of the triangles' hashes: addition forgets their order.
-  std::vector<std::uint64_t> sums(block_count(mesh.triangles.size()));
+  std::vector<std::uint64_t> sums(models::block_count(mesh.triangles.size()));
   const auto add_up = [&](std::size_t block, std::size_t begin, std::size_t end) {
     std::uint64_t sum = 0;
     for (std::size_t t = begin; t < end; ++t) {
@@ -60,8 +62,8 @@ std::uint64_t content_hash(const Mesh& mesh, const ParallelFor& parallel_for) {
     }
     sums[block] = sum;
   };
-  for_each_block(mesh.triangles.size(), parallel_for, add_up);
+  models::for_each_block(mesh.triangles.size(), parallel_for, add_up);
   return mix(std::accumulate(sums.begin(), sums.end(), std::uint64_t{mesh.triangles.size()}));
 }
 
-}  // namespace routebench::models
+}  // namespace routebench

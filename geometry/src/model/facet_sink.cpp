@@ -1,7 +1,8 @@
 #include "model/facet_sink.hpp"
 
+#include <bit>
 #include <cmath>
-#include <cstring>
+#include <cstdint>
 #include <string>
 #include <utility>
 
@@ -14,14 +15,13 @@ FacetSink::FacetSink(const ReadContext& context, Room room, std::size_t expected
       welder_(expected),  // a closed mesh has half as many vertices: with room few collide
       seen_(facets_before) {}
 
-bool FacetSink::are_finite(std::span<const Facet> facets) noexcept {
-  // What is infinite or not a number has all bits of the exponent. Four numbers at a time.
+bool FacetSink::all_finite() const noexcept {
+  // What is infinite or not a number has all bits of the exponent. Several numbers at a time.
   constexpr std::uint32_t kExponent = 0x7F800000U;
-  std::array<std::uint32_t, 9 * kFacetsAtOnce> bits{};
-  std::memcpy(bits.data(), facets.data(), facets.size_bytes());
   std::uint32_t found = 0;
-  for (const std::uint32_t number : bits)
-    found |= (number & kExponent) == kExponent ? 0xFFFFFFFFU : 0U;
+  for (const FloatPoint& vertex : welder_.vertices())
+    for (const float number : vertex)
+      found |= (std::bit_cast<std::uint32_t>(number) & kExponent) == kExponent ? 0xFFFFFFFFU : 0U;
   return found == 0;
 }
 

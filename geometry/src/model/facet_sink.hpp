@@ -43,18 +43,15 @@ class FacetSink {
     if (filled_ == batch_.size()) flush();
   }
 
-  /// Adds up to kFacetsAtOnce facets, which lose their negative zeros; `place_of(i)` tells where
-  /// the i-th is. Faster than one by one where all are finite and nothing was left out before.
+  /// Adds up to kFacetsAtOnce facets, which lose their negative zeros, whatever their corners are:
+  /// all_finite() tells afterwards. For a sink that takes no others.
   static constexpr std::size_t kFacetsAtOnce = VertexWelder<FloatPoint>::kBatch / 3;
-  template <typename Place>
-  void add(std::span<Facet> facets, const Place& place_of) {
-    if (filled_ == 0 && are_finite(facets)) {
-      seen_ += facets.size();
-      weld(std::span(facets.data()->data(), 3 * facets.size()));
-      return;
-    }
-    for (std::size_t i = 0; i < facets.size(); ++i) add(facets[i], [&] { return place_of(i); });
+  void add_unchecked(std::span<Facet> facets) {
+    seen_ += facets.size();
+    weld(std::span(facets.data()->data(), 3 * facets.size()));
   }
+  /// Whether all corners so far are finite. Looks at vertices, of which there are a sixth as many.
+  [[nodiscard]] bool all_finite() const noexcept;
 
   /// Facets added so far and before, left out ones included.
   [[nodiscard]] std::size_t seen() const noexcept { return seen_; }
@@ -72,7 +69,6 @@ class FacetSink {
     for (const auto& corner : facet) sum += corner[0] + corner[1] + corner[2];
     return sum * 0.0F == 0.0F || each_is_finite(facet);
   }
-  [[nodiscard]] static bool are_finite(std::span<const Facet> facets) noexcept;
   [[nodiscard]] static bool each_is_finite(const Facet& facet) noexcept;
   [[noreturn]] void refuse_not_finite(const Facet& facet, const std::string& place) const;
   void weld(std::span<FloatPoint> corners);

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "model/cgal_data.hpp"
-#include "model/content_hash.hpp"
 #include "model/formats.hpp"
 #include "model/mapped_file.hpp"
 #include "model/mend.hpp"
@@ -74,7 +73,6 @@ Model load_model(const std::string& spec, const ModelOptions& options,
   model.report.upper_mm = bounds.upper;
   model.mesh = std::move(raw.mesh);
   model.warnings = std::move(raw.warnings);
-  model.content_hash = models::content_hash(model.mesh, parallel_for);
   return model;
 }
 

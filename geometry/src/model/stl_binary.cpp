@@ -87,7 +87,8 @@ RawMesh read_binary_stl(std::span<const char> bytes, const ReadContext& context)
   auto& triangles = raw.mesh.triangles;
   resize_large(triangles, extent.facets, context.parallel_for);
   std::vector<WeldedPart> parts(block_count(extent.facets));
-  const auto read = [&](std::size_t block, std::size_t begin, std::size_t end) {
+  // Calls add(sink, facets, offset of the first) for facets [begin, end).
+  const auto fill_sink = [&](std::size_t begin, std::size_t end, const auto& add) {
     const auto room = [to = triangles.data() + begin](std::size_t count) mutable {
       return std::exchange(to, to + count);
     };
@@ -95,18 +96,32 @@ RawMesh read_binary_stl(std::span<const char> bytes, const ReadContext& context)
     std::array<Facet, FacetSink::kFacetsAtOnce> facets;  // written before it is read
     for (std::size_t first = begin; first < end; first += facets.size()) {
       const std::size_t count = std::min(facets.size(), end - first);
-      const auto offset_of = [first](std::size_t i) {
-        return kHeaderBytes + (first + i) * kFacetBytes;
-      };
+      const std::size_t offset = kHeaderBytes + first * kFacetBytes;
       for (std::size_t i = 0; i < count; ++i) {
-        __builtin_prefetch(&bytes[std::min(offset_of(i) + kBytesAhead, bytes.size() - 1)]);
-        std::memcpy(&facets[i], bytes.data() + offset_of(i) + kNormalBytes, sizeof(Facet));
+        const char* const facet = bytes.data() + offset + i * kFacetBytes;
+        __builtin_prefetch(std::min(facet + kBytesAhead, bytes.data() + bytes.size() - 1));
+        std::memcpy(&facets[i], facet + kNormalBytes, sizeof(Facet));
       }
-      sink.add(std::span(facets).first(count),
-               [&](std::size_t i) { return "byte " + std::to_string(offset_of(i)); });
+      add(sink, std::span(facets).first(count), offset);
     }
-    parts[block] = {sink.take_vertices(),
-                    std::span(triangles).subspan(begin, end - begin - sink.dropped())};
+    return sink;
+  };
+  const auto add_all = [](FacetSink& sink, std::span<Facet> facets, std::size_t) {
+    sink.add_unchecked(facets);
+  };
+  const auto add_finite = [](FacetSink& sink, std::span<Facet> facets, std::size_t offset) {
+    for (std::size_t i = 0; i < facets.size(); ++i)
+      sink.add(facets[i], [&] { return "byte " + std::to_string(offset + i * kFacetBytes); });
+  };
+  const auto read = [&](std::size_t block, std::size_t begin, std::size_t end) {
+    const auto keep = [&](FacetSink sink) {
+      std::vector<FloatPoint> vertices = sink.take_vertices();
+      parts[block] = {std::move(vertices),
+                      std::span(triangles).subspan(begin, end - begin - sink.dropped())};
+    };
+    // Nearly all files are sound: rather read a part again than look at every corner.
+    FacetSink sink = fill_sink(begin, end, add_all);
+    keep(sink.all_finite() ? std::move(sink) : fill_sink(begin, end, add_finite));
   };
   for_each_block(extent.facets, context.parallel_for, read);
   raw.mesh.vertices = join_parts(parts, context.parallel_for);

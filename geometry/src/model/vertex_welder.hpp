@@ -52,10 +52,13 @@ class VertexWelder {
   explicit VertexWelder(std::size_t expected);
 
   /// Replaces negative zeros in `points` by zeros and writes each point's number to `indices`.
-  /// Takes at most kBatch finite points; the distinct ones in all must stay below 2^32 - 1.
+  /// Takes at most kBatch points; the distinct ones in all must stay below 2^32 - 1. Points that
+  /// are not finite get some number, and stay what they are.
   void weld(std::span<Point> points, std::uint32_t* indices);
 
-  /// The distinct points; the welder is empty afterwards.
+  /// The distinct points so far.
+  [[nodiscard]] const std::vector<Point>& vertices() const noexcept { return vertices_; }
+  /// The same; the welder is empty afterwards.
   [[nodiscard]] std::vector<Point> take_vertices();
 
  private:

@@ -80,8 +80,9 @@ class ApartRings {
 
   [[nodiscard]] Place place_of(std::uint32_t ring) const {
     const std::span<const GridPoint> points = rings_.ring(ring);
-    const auto least =
-        static_cast<std::size_t>(std::min_element(points.begin(), points.end()) - points.begin());
+    std::size_t least = 0;
+    for (std::size_t i = 1; i < points.size(); ++i)
+      if (order_of(points[i]) < order_of(points[least])) least = i;
     const GridPoint before = points[least == 0 ? points.size() - 1 : least - 1];
     const GridPoint after = points[least + 1 == points.size() ? 0 : least + 1];
     Place place{points[least], box_of(points), turn(before, points[least], after) > 0, {}, 0};

@@ -21,6 +21,11 @@ struct GridPoint {
   friend auto operator<=>(const GridPoint&, const GridPoint&) = default;
 };
 
+/// Ordered as points are, and compared at once.
+[[nodiscard]] inline std::int64_t order_of(GridPoint p) noexcept {
+  return std::int64_t{p.x} * (std::int64_t{1} << 32) + p.y;
+}
+
 inline constexpr std::int32_t kMaxUnits = (1 << 30) - 1;  // 1024 mm
 
 inline constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();

@@ -59,31 +59,43 @@ std::string counted(std::size_t count, const std::string& noun) {
   return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
 }
 
-bool is_within(const Point3& p) noexcept {
-  // Written so that NaN fails too.
-  return std::abs(p.x) <= kMaxCoordinateMm && std::abs(p.y) <= kMaxCoordinateMm &&
-         std::abs(p.z) <= kMaxCoordinateMm;
-}
-
 /// Refuses vertices that lie nowhere, and returns the first of the highest ones.
 std::size_t checked_highest(const std::vector<Point3>& vertices, const std::string& model_name,
                             const ParallelFor& parallel_for) {
-  std::vector<std::size_t> highest(models::block_count(vertices.size()));
+  // Written so that NaN fails too.
+  const auto is_within = [](double coordinate) { return std::abs(coordinate) <= kMaxCoordinateMm; };
+  const auto refuse_outside = [&](std::size_t v) {
+    const Point3& p = vertices[v];
+    if (is_within(p.x) && is_within(p.y) && is_within(p.z)) return;
+    refuse(model_name, "vertex " + std::to_string(v) + " at x = " + text(p.x) +
+                           ", y = " + text(p.y) + ", z = " + text(p.z) +
+                           " mm: coordinates must be numbers of at most 1000 m");
+  };
+  struct Top {
+    double z_mm;
+    std::size_t begin;  ///< of the block
+  };
+  std::vector<Top> tops(models::block_count(vertices.size()));
   const auto check = [&](std::size_t block, std::size_t begin, std::size_t end) {
-    std::size_t top = begin;
+    // Without branches; which vertex it is matters only if one is outside.
+    unsigned outside = 0;
+    double top_mm = vertices[begin].z;
     for (std::size_t v = begin; v < end; ++v) {
       const Point3& p = vertices[v];
-      if (!is_within(p))
-        refuse(model_name, "vertex " + std::to_string(v) + " at x = " + text(p.x) +
-                               ", y = " + text(p.y) + ", z = " + text(p.z) +
-                               " mm: coordinates must be numbers of at most 1000 m");
-      if (p.z > vertices[top].z) top = v;
+      outside |= static_cast<unsigned>(!is_within(p.x)) | static_cast<unsigned>(!is_within(p.y)) |
+                 static_cast<unsigned>(!is_within(p.z));
+      top_mm = std::max(top_mm, p.z);
     }
-    highest[block] = top;
+    for (std::size_t v = begin; outside != 0 && v < end; ++v) refuse_outside(v);
+    tops[block] = {top_mm, begin};
   };
   models::for_each_block(vertices.size(), parallel_for, check);
-  const auto is_lower = [&](std::size_t a, std::size_t b) { return vertices[a].z < vertices[b].z; };
-  return highest.empty() ? 0 : *std::max_element(highest.begin(), highest.end(), is_lower);
+  if (tops.empty()) return 0;
+  std::size_t highest = 0;
+  for (const Top& top : tops)
+    if (top.z_mm > vertices[highest].z)
+      for (highest = top.begin; vertices[highest].z != top.z_mm;) ++highest;
+  return highest;
 }
 
 /// Refuses a triangle that names a vertex which is not there.

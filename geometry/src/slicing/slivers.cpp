@@ -6,9 +6,28 @@
 #include "routebench/geometry/vec.hpp"
 
 namespace routebench::slicing {
+namespace {
+
+/// The way round a ring along x and y only, with a little to spare: at least as long as the ring,
+/// and found without roots.
+double most_perimeter_mm(const Ring& ring) {
+  constexpr double kForRounding = 1 + 1e-9;
+  double sum = 0;
+  Point2 a = ring.back();
+  for (const Point2 b : ring) {
+    sum += std::abs(b.x - a.x) + std::abs(b.y - a.y);
+    a = b;
+  }
+  return sum * kForRounding;
+}
+
+}  // namespace
 
 bool is_sliver(const Ring& ring, double width_mm) {
-  return 2 * std::abs(signed_area_mm2(ring)) <= width_mm * perimeter_mm(ring);
+  if (ring.empty()) return true;
+  const double twice_area = 2 * std::abs(signed_area_mm2(ring));
+  return twice_area <= width_mm * most_perimeter_mm(ring) &&
+         twice_area <= width_mm * perimeter_mm(ring);
 }
 
 Ring without_spikes(const Ring& ring, double width_mm) {

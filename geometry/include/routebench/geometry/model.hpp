@@ -49,7 +49,6 @@ struct Model {
   Mesh mesh;
   MeshReport report;
   std::vector<std::string> warnings;  ///< one line each, without the model's name
-  std::uint64_t content_hash = 0;  ///< of the prepared mesh's triangles, independent of their order
 };
 
 /// Reads or makes a model.
@@ -66,5 +65,12 @@ struct Model {
 /// Cost   linear in the file and the triangles; simplifying takes far longer than all else.
 [[nodiscard]] Model load_model(const std::string& spec, const ModelOptions& options = {},
                                const ParallelFor& parallel_for = serial_for);
+
+/// One number that tells whether two meshes are the same surface, bit for bit. It depends on the
+/// coordinates and directions of the triangles; neither on their order nor on the order of the
+/// vertices nor on the corner at which a triangle starts.
+/// Cost   linear in vertices and triangles.
+[[nodiscard]] std::uint64_t content_hash(const Mesh& mesh,
+                                         const ParallelFor& parallel_for = serial_for);
 
 }  // namespace routebench

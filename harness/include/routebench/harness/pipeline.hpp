@@ -75,6 +75,7 @@ struct SliceModelOptions {
   SliceMethod method = SliceMethod::kBucket;
   bool repair = false;     ///< see ModelOptions and SliceOptions
   bool find_skins = true;  ///< whether Layer::solid is wanted of layers that are not all dense
+  bool hash_mesh = false;  ///< whether SlicedModel::mesh_hash is wanted
   std::optional<double> cell_mm =
       std::nullopt;  ///< for voxel: see SliceOptions; else the task's line width
   /// Told what container voxel is going to use, before it does.
@@ -85,7 +86,7 @@ struct SliceModelOptions {
 struct SlicedModel {
   std::string spec;                        ///< as the user wrote it
   std::optional<MeshReport> mesh;          ///< nothing if the model is a file of layers
-  std::optional<std::uint64_t> mesh_hash;  ///< see Model::content_hash
+  std::optional<std::uint64_t> mesh_hash;  ///< see content_hash; nothing unless asked for
   SliceReport report;
   std::vector<std::string> warnings;  ///< of reading and slicing, one line each, without the spec
   std::vector<Layer> layers;          ///< with `solid` set if skins were asked for
