@@ -7,10 +7,10 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 
 names=("$@")
-[ ${#names[@]} -gt 0 ] || names=(planners published scaling slicers published_tables complexity)
+[ ${#names[@]} -gt 0 ] || names=(planners published scaling slicers published_tables low_poly complexity)
 experiments/build.sh release routebench_program
 program=build/release/bin/routebench
-PATH=$PWD/build/release/bin:$PATH  # published_tables.toml calls the program as a slicer
+PATH=$PWD/build/release/bin:$PATH  # published_tables.toml and low_poly.toml call the program as a slicer
 slicer_metrics=travel_mm,retractions,strokes,print_time_s,stated_time_s,job_cpu_s
 
 # One page of what all experiments on growth claim and measure.
@@ -54,6 +54,7 @@ for name in "${names[@]}"; do
   options=(--formats png --metrics travel_mm)
   # What slicers do is what ours are measured by.
   [ "$name" != published_tables ] || options=(--formats png --metrics travel_mm,job_wall_s,job_cpu_s)
+  [ "$name" != low_poly ] || options=(--formats png --metrics job_wall_s,plan_cpu_ns)
   [ "$name" != slicers ] || options=(--formats png --metrics "$slicer_metrics" --baseline PrusaSlicer)
   "$program" plot "results/$name" "${options[@]}" >/dev/null
   "$program" export "results/$name" >/dev/null

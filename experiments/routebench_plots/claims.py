@@ -15,7 +15,7 @@ from matplotlib.lines import Line2D
 
 from . import scaling
 from .markdown import markdown_row, markdown_text
-from .quantities import in_sentence, quantity, scale_for
+from .quantities import amount, in_sentence, quantity, scale_for
 from .results import Item, Metric, Results
 from .sheet import LegendEntry, Sheet
 from .style import ABSENT, looks
@@ -198,19 +198,13 @@ def published_markdown(results: Results) -> list[str]:
                     markdown_row(
                         [
                             markdown_text(entry["program"]),
-                            _amount(float(entry["value"]), metric),
+                            amount(float(entry["value"]), metric),
                             f"published: {markdown_text(where)}",
                         ]
                     )
                 )
             lines += _measured_rows(results, model, metric)
     return lines
-
-
-def _amount(value: float, metric: Metric) -> str:
-    """A value in the unit in which it is easy to read."""
-    scale = scale_for(metric, [value])
-    return quantity(scale(value), scale.unit)
 
 
 def _measured_rows(
@@ -228,7 +222,7 @@ def _measured_rows(
                 markdown_row(
                     [
                         markdown_text(contender.label),
-                        _amount(value.median, metric),
+                        amount(value.median, metric),
                         markdown_text(where),
                     ]
                 )

@@ -83,6 +83,12 @@ def quantity(value: float, unit: str) -> str:
     return f"{number} {pretty_unit(unit)}" if unit else number
 
 
+def amount(value: float, metric: Metric) -> str:
+    """A value in the unit in which it is easy to read."""
+    scale = scale_for(metric, [value])
+    return quantity(scale(value), scale.unit)
+
+
 def counted(number: int, noun: str) -> str:
     """One layer, two layers."""
     return f"{number} {noun}" if number == 1 else f"{number} {noun}s"

@@ -261,7 +261,7 @@ class Results:
             return None
         triangles, layers, report_json = rows[0]
         report = json.loads(report_json)
-        mesh = report.get("mesh") or {}
+        mesh = self.mesh_report(setting, model)
         sides = [
             high - low
             for low, high in zip(
@@ -276,6 +276,14 @@ class Results:
                 "side_mm": max(sides, default=None),
             }[name]
         )
+
+    def mesh_report(self, setting: Item, model: Item) -> dict[str, Any]:
+        """What was found in a model's mesh; nothing of a file of layers."""
+        rows = self._file.query(
+            "SELECT report_json FROM model WHERE model_id = ?",
+            (self.model_row(setting, model),),
+        )
+        return (json.loads(rows[0][0]).get("mesh") or {}) if rows else {}
 
     def layer_rows(self, cell: Cell, metrics: Sequence[Metric]) -> LayerRows:
         """The scores of the cell's layers, upwards."""

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from . import claims, scaling, sweep
+from . import claims, scaling, simplified, sweep
 from .comparison import (
     SHIFT,
     TIME_MARGIN,
@@ -94,6 +94,8 @@ class Summary:
     """What a sweep of the retraction policy shows, as Markdown."""
     claims: list[str] = field(default_factory=list)
     """Claims and published figures beside what was measured, as Markdown."""
+    simplified: list[str] = field(default_factory=list)
+    """What simplifying models saves, as Markdown."""
 
 
 def summary(results: Results, baseline: str | None = None) -> Summary:
@@ -115,6 +117,7 @@ def summary(results: Results, baseline: str | None = None) -> Summary:
             *claims.claims_markdown(claims.judged_claims(results)),
             *claims.published_markdown(results),
         ],
+        simplified.simplified_markdown(results),
     )
 
 
@@ -139,6 +142,7 @@ def to_markdown(made: Summary, experiment: str) -> str:
         "twice differs by a few percent.".replace("%,", " %,"),
     ]
     lines += made.claims
+    lines += made.simplified
     if made.policy:
         lines += ["", "## Retraction policy", "", *made.policy]
     for part in made.parts:

@@ -48,7 +48,8 @@ CREATE TABLE run(run_id INTEGER PRIMARY KEY, experiment TEXT NOT NULL,
   config_resolved_json TEXT NOT NULL);
 CREATE TABLE model(model_id INTEGER PRIMARY KEY, spec TEXT NOT NULL,
   mesh_hash TEXT NOT NULL, layers_hash TEXT NOT NULL,
-  UNIQUE(spec, mesh_hash, layers_hash));
+  triangles INTEGER NOT NULL, layers INTEGER NOT NULL,
+  report_json TEXT NOT NULL, UNIQUE(spec, mesh_hash, layers_hash));
 CREATE TABLE contender(contender_id INTEGER PRIMARY KEY, name TEXT NOT NULL,
   base_name TEXT NOT NULL, variant_json TEXT NOT NULL,
   variant_hash TEXT NOT NULL, UNIQUE(name, variant_hash));
@@ -124,10 +125,18 @@ class Database:
         self.connection.close()
         return self.path
 
-    def model(self, spec: str, hash_: str = "m") -> int:
-        """Adds a model."""
+    def model(
+        self,
+        spec: str,
+        hash_: str = "m",
+        triangles: int = 0,
+        report: dict[str, object] | None = None,
+    ) -> int:
+        """Adds a model of three layers."""
         row_id = self._next("model")
-        self._insert("model", row_id, spec, hash_, hash_)
+        self._insert(
+            "model", row_id, spec, hash_, hash_, triangles, 3, json.dumps(report or {})
+        )
         return row_id
 
     def contender(self, name: str, hash_: str = "c") -> int:
