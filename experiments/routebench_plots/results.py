@@ -253,15 +253,14 @@ class Results:
     ) -> float | None:
         """Triangles, layers, outline_vertices or side_mm of a model."""
         rows = self._file.query(
-            "SELECT triangles, layers, report_json FROM model "
-            "WHERE model_id = ?",
-            (self._model_rows.get((setting.row_id, model.row_id)),),
+            "SELECT triangles, layers FROM model WHERE model_id = ?",
+            (self.model_row(setting, model),),
         )
         if not rows:
             return None
-        triangles, layers, report_json = rows[0]
-        report = json.loads(report_json)
-        mesh = self.mesh_report(setting, model)
+        triangles, layers = rows[0]
+        report = self.model_report(setting, model)
+        mesh = report.get("mesh") or {}
         sides = [
             high - low
             for low, high in zip(
@@ -277,13 +276,13 @@ class Results:
             }[name]
         )
 
-    def mesh_report(self, setting: Item, model: Item) -> dict[str, Any]:
-        """What was found in a model's mesh; nothing of a file of layers."""
+    def model_report(self, setting: Item, model: Item) -> dict[str, Any]:
+        """What was found in a model; its mesh is None if it is a file of layers."""
         rows = self._file.query(
             "SELECT report_json FROM model WHERE model_id = ?",
             (self.model_row(setting, model),),
         )
-        return (json.loads(rows[0][0]).get("mesh") or {}) if rows else {}
+        return json.loads(rows[0][0]) if rows else {}
 
     def layer_rows(self, cell: Cell, metrics: Sequence[Metric]) -> LayerRows:
         """The scores of the cell's layers, upwards."""

@@ -69,7 +69,7 @@ def _families(results: Results, setting: Item) -> list[tuple[Item | None, list[I
 
 
 def _simplification(results: Results, setting: Item, model: Item) -> dict[str, Any] | None:
-    return results.mesh_report(setting, model).get("simplification")
+    return (results.model_report(setting, model).get("mesh") or {}).get("simplification")
 
 
 def _heads(results: Results) -> list[str]:
